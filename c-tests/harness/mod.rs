@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Builds the release library and C or C++ programs around it, runs them, and
-//! asserts that they ran on the libccd they were meant to run on.
+//! Builds the release library and C or C++ programs that link it, runs them, and asserts which libccd
+//! they load.
 //!
 //! A test driver includes this file with `#[path = "../harness/mod.rs"] mod harness;`
 //!
@@ -18,16 +18,14 @@
 //! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
 //! | `link_system` | the system's; `.swapped()` gives the same program on this library |
 //!
-//! The compilers are those that the `cc` crate finds for the target this test is
-//! compiled for: `CC`, `CXX`, `CFLAGS`, `CXXFLAGS` and its other variables are heard.
-//! Further environment, read for every program but those marked `without_tools`:
-//! `C_TESTS_FLAGS` is appended when compiling and linking (`-fsanitize=address`);
-//! `C_TESTS_RUNNER` goes before the program (`valgrind --error-exitcode=99`).
-//! Compiled for another platform, programs run as cargo runs this test: by what
-//! `CARGO_TARGET_<its name>_RUNNER` says (`qemu-aarch64`). `NM` and `OBJCOPY` name that
-//! platform's, if the usual ones do not know it.
+//! The `cc` crate finds the compilers for the test's own target, and reads `CC`, `CXX`, `CFLAGS`,
+//! `CXXFLAGS` and its other variables. All programs but those marked `without_tools` are compiled and
+//! linked with `C_TESTS_FLAGS` (`-fsanitize=address`) and run by `C_TESTS_RUNNER`
+//! (`valgrind --error-exitcode=99`). Programs for another platform are run by
+//! `CARGO_TARGET_<its name>_RUNNER` (`qemu-aarch64`), as the test itself. `NM` and `OBJCOPY` name that
+//! platform's tools, where the usual ones do not support it.
 
-// Every driver uses a part of this module.
+// Each driver uses a part of this module.
 #![allow(dead_code)]
 
 use std::collections::hash_map::DefaultHasher;
@@ -56,10 +54,10 @@ impl Default for Precision {
 }
 
 impl Precision {
-    /// The precision this test binary itself was compiled for.
+    /// Precision that this test is compiled for.
     pub const CURRENT: Precision = if cfg!(feature = "single") { Precision::Single } else { Precision::Double };
 
-    /// As in the last word of `ccdImplementation()`.
+    /// Returns the last word of `ccdImplementation()`.
     pub fn name(self) -> &'static str {
         match self {
             Precision::Double => "double",
@@ -71,24 +69,24 @@ impl Precision {
 /// A release build of the library, ready to link against.
 #[derive(Debug)]
 pub struct Built {
-    /// Holds libccd.so, libccd.so.2, libccd.a, librs_ccd.a and nothing else.
+    /// Folder of libccd.so, libccd.so.2, libccd.a and librs_ccd.a.
     pub dir: PathBuf,
-    /// What a program linked with one of the archives needs, as rustc reports it.
+    /// Linker flags for a program with one of the archives, from rustc.
     pub native_flags: Vec<String>,
 }
 
-/// The repository's root.
+/// Returns the repository's root.
 pub fn root() -> &'static Path {
-    // The benchmark's package stands deeper.
+    // The benchmark's package is in a subfolder.
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = package.ancestors().find(|dir| dir.join("c-tests").is_dir());
     root.expect("a package of the repository")
 }
 
-/// What this test is compiled for; its programs and the library are compiled for it too.
+/// Target of this test, its programs and the library.
 pub const TARGET: &str = env!("TARGET");
 
-/// The C or C++ compiler for [`TARGET`], with the flags that all programs have.
+/// Returns the C or C++ compiler for [`TARGET`] with the flags of all programs.
 pub fn compiler(cpp: bool) -> cc::Build {
     let mut build = cc::Build::new();
     build
@@ -96,13 +94,13 @@ pub fn compiler(cpp: bool) -> cc::Build {
         .target(TARGET)
         .host(env!("HOST"))
         .opt_level(2)
-        // Of C++ it takes a third of the time to compile.
+        // It takes a third of the compile time of C++.
         .debug(!cpp || under_tool())
         .warnings(true)
         .extra_warnings(true)
         .cargo_metadata(false)
         .out_dir(output_dir())
-        // One rounding an operation, whatever the machine has: the same bits everywhere.
+        // One rounding per operation gives the same bits on every machine.
         .flag("-ffp-contract=off");
     if cfg!(target_arch = "x86") {
         build.flag("-msse2").flag("-mfpmath=sse");
@@ -110,15 +108,15 @@ pub fn compiler(cpp: bool) -> cc::Build {
     build
 }
 
-/// The command that runs a compiler; panics where there is none.
+/// Returns the command that runs a compiler; panics where there is none.
 pub fn compile_with(build: &cc::Build) -> Command {
     let found = build.try_get_compiler();
     found.unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first")).to_command()
 }
 
-/// Where everything this module makes goes: `target/c-tests`.
+/// Returns the folder of all output of this module, `target/c-tests`.
 pub fn output_dir() -> PathBuf {
-    // Cargo names target/tmp to integration tests and benchmarks, wherever target is.
+    // Cargo passes the path of target/tmp to integration tests and benchmarks.
     let target = match option_env!("CARGO_TARGET_TMPDIR") {
         Some(tmp) => PathBuf::from(tmp).join(".."),
         None => root().join("target"),
@@ -128,21 +126,15 @@ pub fn output_dir() -> PathBuf {
     dir.canonicalize().unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
 }
 
-/// The release library, built at most once per process and precision.
+/// Returns the release library, which it builds once per process and precision.
 pub fn library(precision: Precision) -> &'static Built {
-    static DOUBLE: OnceLock<Built> = OnceLock::new();
-    static SINGLE: OnceLock<Built> = OnceLock::new();
-    match precision {
-        Precision::Double => &DOUBLE,
-        Precision::Single => &SINGLE,
-    }
-    .get_or_init(|| build_library(precision))
+    static LIBRARIES: [OnceLock<Built>; 2] = [OnceLock::new(), OnceLock::new()];
+    LIBRARIES[precision as usize].get_or_init(|| build_library(precision))
 }
 
 fn build_library(precision: Precision) -> Built {
     let output = output_dir();
-    // Both precisions share their crates. Test binaries may run side by side: one builds, the others
-    // wait for it.
+    // Both precisions share their crates. Of parallel test binaries one builds, the others wait.
     let target = output.join("library");
     let lock = locked(&output.join("library.lock"));
 
@@ -158,23 +150,19 @@ fn build_library(precision: Precision) -> Built {
         cargo.args(["--target", TARGET]);
         release = target.join(TARGET).join("release");
     }
-    // Cargo repeats what rustc said even when nothing has to be built again.
+    // Cargo repeats rustc's messages when everything is up to date.
     cargo.args(["--", "--print", "native-static-libs"]);
-    let said = must_succeed(&mut cargo, "Rust's cargo").stderr;
-    let native_flags = said
-        .lines()
-        .find_map(|line| line.split_once("native-static-libs: "))
-        .unwrap_or_else(|| panic!("rustc did not report native-static-libs:\n{said}"))
-        .1
-        .split_whitespace()
-        .map(String::from)
-        .collect();
+    let messages = must_succeed(&mut cargo, "Rust's cargo").stderr;
+    let native_flags = messages.lines().find_map(|line| line.split_once("native-static-libs: "));
+    let (_, native_flags) =
+        native_flags.unwrap_or_else(|| panic!("rustc did not report native-static-libs:\n{messages}"));
+    let native_flags = native_flags.split_whitespace().map(String::from).collect();
 
     let dir = output.join(precision.name());
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
     for name in ["libccd.so", "libccd.a"] {
         let built = fs::read(release.join(name)).unwrap_or_else(|e| panic!("no {name}: {e}"));
-        // Programs are compiled anew where it is newer.
+        // A newer file would recompile all programs.
         if fs::read(dir.join(name)).ok().as_ref() != Some(&built) {
             replace(&dir.join(name), |new| fs::write(new, &built));
         }
@@ -185,25 +173,25 @@ fn build_library(precision: Precision) -> Built {
     Built { dir, native_flags }
 }
 
-/// Opens a file that one thread of all processes holds at a time.
+/// Opens a file and locks it against all other threads and processes.
 #[allow(clippy::incompatible_msrv, reason = "the tests' own crates need 1.89 too")]
 fn locked(path: &Path) -> File {
     let file = File::options().create(true).append(true).open(path);
     file.and_then(|file| file.lock().map(|()| file)).unwrap_or_else(|e| panic!("cannot lock {}: {e}", path.display()))
 }
 
-/// A tool for object files: as the environment names it, or by its own name.
+/// Returns the command of a tool for object files, which the environment may name.
 pub fn binutils(name: &str) -> Command {
     Command::new(std::env::var_os(name.to_uppercase()).unwrap_or_else(|| name.into()))
 }
 
-/// Whether a command is there; `--version` shows it.
+/// Returns whether `command --version` succeeds.
 pub fn installed(command: &str) -> bool {
-    let said = Command::new(command).arg("--version").output();
-    said.is_ok_and(|said| said.status.success())
+    let output = Command::new(command).arg("--version").output();
+    output.is_ok_and(|output| output.status.success())
 }
 
-/// Names what figures are measured on: the system's release and the processor.
+/// Returns the system's release and the processor, for figures measured on this machine.
 pub fn machine() -> String {
     let after = |file: &str, key: &str| {
         let text = fs::read_to_string(file).unwrap_or_default();
@@ -218,18 +206,18 @@ pub fn machine() -> String {
     format!("{name} {}, {processor}", release("VERSION_ID="))
 }
 
-/// Whether the programs are for another processor than this machine's.
+/// Returns whether the programs are for another processor than this machine's.
 pub fn emulated() -> bool {
     TARGET != env!("HOST")
 }
 
-/// What runs a program for [`TARGET`]: nothing, where that is this machine.
+/// Returns the command that runs a program for [`TARGET`]; empty for this machine's own.
 fn emulator() -> Vec<String> {
     let target = TARGET.to_uppercase().replace('-', "_");
     words(&format!("CARGO_TARGET_{target}_RUNNER"))
 }
 
-/// A command that runs `path` by the words before it.
+/// Returns the command that runs `path` with `runner`.
 fn run_by(runner: &[String], path: &Path) -> Command {
     let mut words = runner.iter().map(OsString::from).chain([path.into()]);
     let mut command = Command::new(words.next().expect("a path at least"));
@@ -237,8 +225,8 @@ fn run_by(runner: &[String], path: &Path) -> Command {
     command
 }
 
-/// Puts `rs_` before every name of libccd's in a copy of the archive, so that
-/// one process can hold this library and the system's.
+/// Copies the archive with `rs_` before every symbol of libccd, so that one process can link this
+/// library and the system's.
 fn rename_symbols(archive: &Path, renamed: &Path) {
     if written_at(renamed) > written_at(archive) {
         return;
@@ -249,7 +237,7 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     let names = symbols.lines().filter_map(|line| line.split_whitespace().nth(2));
     let ours = names.filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"));
     let lines: BTreeSet<String> = ours.map(|n| format!("{n} rs_{n}\n")).collect();
-    assert!(!lines.is_empty(), "{}: no libccd", archive.display());
+    assert!(!lines.is_empty(), "{}: no symbol of libccd", archive.display());
     let table = renamed.with_extension("syms");
     let lines: String = lines.into_iter().collect();
     fs::write(&table, lines).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
@@ -263,13 +251,13 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     fs::remove_file(&table).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
 }
 
-/// When a file was written; `None` where there is none.
+/// Returns the modification time of a file; `None` where there is none.
 fn written_at(path: &Path) -> Option<SystemTime> {
     fs::metadata(path).and_then(|data| data.modified()).ok()
 }
 
-/// Whether a program is newer than the archives of its command and than every file that the
-/// compiler's rule, as for make, says it is made of.
+/// Returns whether a program is newer than the archives of its compile command and than every file in
+/// the compiler's dependency rule for make.
 fn is_up_to_date(program: &Path, command: &Command, rule: &Path) -> bool {
     let rule = fs::read_to_string(rule).unwrap_or_default();
     // Blanks within a path are escaped.
@@ -281,8 +269,8 @@ fn is_up_to_date(program: &Path, command: &Command, rule: &Path) -> bool {
     !rule.is_empty() && files.chain(archives).all(|file| written_at(&file).is_some_and(|time| Some(time) < made))
 }
 
-/// Makes a file under a name of its own, then moves it into place: whoever is
-/// using the old one keeps it.
+/// Makes a file under a temporary name and moves it into place, so that the old file stays valid for
+/// processes that use it.
 fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -292,7 +280,7 @@ fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
     make(&new).and_then(|()| fs::rename(&new, path)).unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
 }
 
-/// Runs a build tool; panics with what it wrote unless it succeeds.
+/// Runs a tool; panics with its output unless it succeeds.
 pub fn must_succeed(command: &mut Command, what: &str) -> Written {
     let output = match command.output() {
         Ok(output) => output,
@@ -313,7 +301,7 @@ pub fn must_succeed(command: &mut Command, what: &str) -> Written {
     written
 }
 
-/// A command as one types it, without the environment it runs in.
+/// Returns the words of a command, without its environment.
 fn words_of(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     let shown: Vec<_> = words.map(OsStr::to_string_lossy).collect();
@@ -329,7 +317,7 @@ enum Link {
     System,
 }
 
-/// A C or C++ program to compile.
+/// C or C++ program to compile.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
     name: String,
@@ -345,48 +333,53 @@ pub struct Program {
 }
 
 impl Program {
-    /// A C program, C99 unless [`standard`](Self::standard) says otherwise.
+    /// Returns a C program: C99 unless [`standard`](Self::standard) sets another.
     pub fn c(name: &str) -> Program {
         Program { name: name.to_owned(), tools: true, ..Program::default() }
     }
 
-    /// A C++ program, C++17 unless [`standard`](Self::standard) says otherwise.
+    /// Returns a C++ program: C++17 unless [`standard`](Self::standard) sets another.
     pub fn cpp(name: &str) -> Program {
-        Program { cpp: true, ..Program::c(name) }
+        Program::c(name).as_cpp()
     }
 
-    /// The source file, relative to `c-tests/` (or absolute).
+    /// Compiles the C source as C++.
+    pub fn as_cpp(mut self) -> Program {
+        self.cpp = true;
+        self
+    }
+
+    /// Sets the source file, relative to `c-tests/` (or absolute).
     pub fn source(mut self, path: impl AsRef<Path>) -> Program {
         self.source = root().join("c-tests").join(path);
         self
     }
 
-    /// `"c99"`, `"gnu11"`, `"c++20"`.
+    /// Sets the language standard: `"c99"`, `"gnu11"`, `"c++20"`.
     pub fn standard(mut self, standard: &str) -> Program {
         self.standard = Some(standard.to_owned());
         self
     }
 
-    /// Takes libccd's headers from the system instead of `include/`.
+    /// Includes the system's headers of libccd instead of those in `include/`.
     pub fn system_headers(mut self) -> Program {
         self.system_headers = true;
         self
     }
 
-    /// A flag for compiling and linking, after the usual
-    /// ones of [`compiler`]; `-Werror` makes warnings fail the build.
+    /// Adds a flag for compiling and linking, after those of [`compiler`].
     pub fn flag(mut self, flag: impl AsRef<OsStr>) -> Program {
         self.flags.push(flag.as_ref().to_owned());
         self
     }
 
-    /// `-l` before libccd.
+    /// Links a library, before libccd.
     pub fn library(mut self, name: &str) -> Program {
         self.libraries.push(format!("-l{name}"));
         self
     }
 
-    /// Which build of this library; [`Precision::CURRENT`] if not said.
+    /// Sets the precision of this library, [`Precision::CURRENT`] by default.
     pub fn precision(mut self, precision: Precision) -> Program {
         self.precision = precision;
         self
@@ -412,14 +405,14 @@ impl Program {
         self
     }
 
-    /// For a program that cannot live with a sanitizer or valgrind, such as one
-    /// with a malloc of its own: `C_TESTS_FLAGS` and `C_TESTS_RUNNER` pass it by.
+    /// Ignores `C_TESTS_FLAGS` and `C_TESTS_RUNNER`, for a program that fails under a sanitizer or
+    /// valgrind, such as one with its own malloc.
     pub fn without_tools(mut self) -> Program {
         self.tools = false;
         self
     }
 
-    /// Compiles and links; panics with the compiler's words when it does not.
+    /// Compiles and links; panics with the compiler's messages where that fails.
     pub fn build(self) -> Executable {
         assert!(
             self.precision == Precision::Double || matches!(self.link, Link::OursShared | Link::OursStatic),
@@ -441,7 +434,7 @@ impl Program {
         if self.tools {
             compile.args(words("C_TESTS_FLAGS"));
         }
-        // Some C++ programs are C sources, which clang compiles as C++ only when told to.
+        // clang compiles a C source as C++ only with -x.
         compile.args(["-x", ["c", "c++"][usize::from(self.cpp)]]).arg(&self.source);
         compile.args(["-x", "none"]).args(&self.libraries);
         let mut library_path = None;
@@ -463,20 +456,20 @@ impl Program {
         }
         compile.arg("-lm");
 
-        // The hash of the command's words keeps two programs of one name apart.
+        // The hash of the command distinguishes programs of one name.
         let mut hash = DefaultHasher::new();
         words_of(&compile).hash(&mut hash);
         let dir = output_dir().join("programs");
         fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
         let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
-        // Compiled once, for all tests and runs until a file of it changes.
+        // All tests and runs share the program until one of its files changes.
         let rule = path.with_extension("d");
         let lock = locked(&rule);
         if !is_up_to_date(&path, &compile, &rule) {
             replace(&path, |new| {
                 let what = format!("the compiler (for {})", self.name);
-                let said = must_succeed(compile.arg("-MD").arg("-MF").arg(&rule).arg("-o").arg(new), &what);
-                print!("{}", said.stderr);
+                let written = must_succeed(compile.arg("-MD").arg("-MF").arg(&rule).arg("-o").arg(new), &what);
+                print!("{}", written.stderr);
                 Ok(())
             });
         }
@@ -492,12 +485,12 @@ impl Program {
     }
 }
 
-/// A compiled program.
+/// Compiled program.
 #[derive(Clone, Debug)]
 pub struct Executable {
     pub path: PathBuf,
     name: String,
-    /// The words of a command that runs it, in place of itself.
+    /// Words of a command that runs the program.
     before: Vec<OsString>,
     library_path: Option<PathBuf>,
     timeout: Duration,
@@ -520,8 +513,7 @@ impl Written {
 }
 
 impl Executable {
-    /// A program that something else compiled, to run on the libraries it finds
-    /// by itself.
+    /// Returns a program that another tool compiled, with its own search path for libraries.
     pub fn made_elsewhere(name: &str, path: impl Into<PathBuf>) -> Executable {
         Executable {
             path: path.into(),
@@ -534,7 +526,7 @@ impl Executable {
         }
     }
 
-    /// The same program with this library under it instead of the system's.
+    /// Returns the same program with this library instead of the system's.
     pub fn swapped(&self) -> Executable {
         let mut swapped = self.clone();
         swapped.library_path = Some(library(Precision::Double).dir.clone());
@@ -542,8 +534,7 @@ impl Executable {
         swapped
     }
 
-    /// The same program watched by compare.sh, which adds a line `counted key value …` to
-    /// what it writes.
+    /// Returns the same program run by compare.sh, which adds a line `counted key value …` to its output.
     pub fn compared(&self, options: &[&str]) -> Executable {
         let mut compared = self.clone();
         let library = library(Precision::Double).dir.join("libccd.so");
@@ -553,45 +544,44 @@ impl Executable {
         compared.with_options(options)
     }
 
-    /// The same program by itself again.
+    /// Returns the same program without compare.sh.
     pub fn uncompared(&self) -> Executable {
         Executable { before: Vec::new(), ..self.clone() }
     }
 
-    /// With more options of compare.sh's.
+    /// Adds options of compare.sh.
     pub fn with_options(&self, options: &[&str]) -> Executable {
         let mut compared = self.clone();
         compared.before.extend(options.iter().map(OsString::from));
         compared
     }
 
-    /// With compare.sh's screen, on stderr, in place of that line.
+    /// Prints compare.sh's screen on stderr in place of that line.
     pub fn with_screen(mut self) -> Executable {
         self.before.retain(|word| word != "--fields");
         self
     }
 
-    /// Longest run, 300 s if not said; twenty times that under a tool or an emulator.
+    /// Sets the longest run, 300 s by default; twenty times that under a tool or an emulator.
     pub fn timeout(mut self, timeout: Duration) -> Executable {
         self.timeout = timeout;
         self
     }
 
-    /// Prints nothing of what the program writes.
+    /// Does not print the program's output.
     pub fn quiet(mut self) -> Executable {
         self.quiet = true;
         self
     }
 
-    /// Runs the program to its end and prints what it wrote. Panics unless it
-    /// exits with 0 in time.
+    /// Runs the program and prints its output; panics unless it exits with 0 in time.
     pub fn run(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Written {
         let (status, written) = self.run_to_end(args);
         assert!(status.success(), "{} failed: {status}\n{:?}\n{}", self.name, self.command(), written.stderr);
         written
     }
 
-    /// As [`run`](Self::run), whatever the exit code.
+    /// Runs the program as [`run`](Self::run) does, with any exit code.
     pub fn run_to_end(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> (ExitStatus, Written) {
         let mut command = self.command();
         let factor = if self.runner().is_empty() { 1 } else { 20 };
@@ -602,7 +592,7 @@ impl Executable {
         (status, written)
     }
 
-    /// Words before the program.
+    /// Returns the words before the program.
     fn runner(&self) -> Vec<String> {
         let mut runner = emulator();
         if self.tools {
@@ -611,7 +601,7 @@ impl Executable {
         runner
     }
 
-    /// The command that runs the program, without arguments.
+    /// Returns the command that runs the program, without arguments.
     pub fn command(&self) -> Command {
         let mut runner = self.runner();
         runner.extend(self.before.iter().map(|w| w.to_string_lossy().into_owned()));
@@ -620,13 +610,13 @@ impl Executable {
         command
     }
 
-    /// The libccd.so.2 the dynamic linker gives this program, as ldd would say.
+    /// Returns the libccd.so.2 that the dynamic linker finds for this program, as ldd does.
     pub fn loaded_ccd(&self) -> Option<PathBuf> {
         let mut command = run_by(&emulator(), &self.path);
         set_library_path(&mut command, self.library_path.as_deref());
-        let said = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
-        let line = said.stdout.lines().find(|line| line.contains("libccd.so"))?;
-        // A path may have blanks in it.
+        let written = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
+        let line = written.stdout.lines().find(|line| line.contains("libccd.so"))?;
+        // The path may contain blanks.
         let (path, _address) = line.split_once("=> ")?.1.rsplit_once(" (0x")?;
         Some(PathBuf::from(path))
     }
@@ -649,7 +639,7 @@ impl Executable {
             let name = &self.name;
             panic!("{name} runs on {loaded:?}, not on the system's libccd")
         });
-        // Installed in /usr/local, this library comes before libccd.
+        // Installed in /usr/local, this library is found before libccd.
         let name = b"ccdImplementation";
         assert!(
             !bytes.windows(name.len()).any(|w| w == name),
@@ -659,8 +649,8 @@ impl Executable {
     }
 }
 
-/// Loads a library before the others of a command's program. By its name: the dynamic linker splits
-/// `LD_PRELOAD` at blanks, which the path may have.
+/// Loads a library before the others of a command's program. By its file name: the dynamic linker
+/// splits `LD_PRELOAD` at blanks, which the path may contain.
 pub fn preload(command: &mut Command, library: &Path) {
     let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
     let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
@@ -674,11 +664,11 @@ fn set_library_path(command: &mut Command, dir: Option<&Path>) {
         Some(dir) => command.env("LD_LIBRARY_PATH", dir),
         None => command.env_remove("LD_LIBRARY_PATH"),
     };
-    // Every symbol is looked up at the start: a missing one fails at once.
+    // The linker resolves every symbol at the start: a missing one fails at once.
     command.env("LD_BIND_NOW", "1");
 }
 
-/// Runs a command to its end, under `timeout`; panics when it does not come to one in time.
+/// Runs a command under `timeout`; panics where it does not end in time.
 pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Written) {
     let mut limited = Command::new("timeout");
     limited.arg(timeout.as_secs_f64().to_string());
@@ -692,13 +682,13 @@ pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Wri
     let output = limited.stdin(Stdio::null()).output();
     let output = output.unwrap_or_else(|e| panic!("cannot run {limited:?}: {e}"));
     let written = Written::of(&output);
-    let late = output.status.code() == Some(124);
-    assert!(!late, "{command:?} did not end in {timeout:?}\n{}{}", written.stdout, written.stderr);
+    let timed_out = output.status.code() == Some(124);
+    assert!(!timed_out, "{command:?} did not end in {timeout:?}\n{}{}", written.stdout, written.stderr);
     (output.status, written)
 }
 
-/// Runs a command under callgrind, with these options and names in full: what it wrote, and the
-/// counts of each dump.
+/// Runs a command under callgrind with these options and uncompressed names. Returns its output and
+/// the text of each dump.
 pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<String>), String> {
     let work = tempfile::tempdir().map_err(|e| e.to_string())?;
     let out = work.path().join("out");
@@ -708,7 +698,7 @@ pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<Stri
     command.arg(format!("--callgrind-out-file={}", out.display()));
     command.arg(plain.get_program()).args(plain.get_args());
     command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
-    // A lazy binding would be counted as the query's.
+    // Lazy binding would be counted as part of the query.
     command.env("LD_BIND_NOW", "1");
     let output = command.output().map_err(|e| format!("valgrind: {e}"))?;
     let written = Written::of(&output);
@@ -722,7 +712,7 @@ pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<Stri
     Ok((written, texts.collect()))
 }
 
-/// The line `first key value key value …` of what a program wrote.
+/// Parses the line `first key value key value …` of a program's output.
 pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
     let line = text
         .lines()
@@ -738,7 +728,7 @@ pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
         .collect()
 }
 
-/// Replaces what stands in a text between the mark `<!-- NAME -->` and the next `<!-- end -->`.
+/// Replaces the text between the mark `<!-- NAME -->` and the next `<!-- end -->`.
 pub fn between_marks(text: &str, name: &str, new: &str) -> String {
     let mark = format!("<!-- {name} -->\n");
     let parts = text.split_once(&mark).and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
@@ -746,27 +736,27 @@ pub fn between_marks(text: &str, name: &str, new: &str) -> String {
     format!("{before}{mark}{new}<!-- end -->{after}")
 }
 
-/// The same in a page of the repository.
+/// Does the same in a page of the repository.
 pub fn write_between_marks(page: &str, name: &str, new: &str) {
     let path = root().join(page);
     let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{page}: {e}"));
     fs::write(&path, between_marks(&text, name, new)).unwrap_or_else(|e| panic!("{page}: {e}"));
 }
 
-/// How many inputs a program gets: all, or a tenth under a tool, which looks at memory and
-/// not at answers, and is ten times slower.
+/// Returns the number of a program's inputs: all, or a tenth under a tool, which checks memory and is
+/// ten times slower.
 pub fn rounds(all: u32) -> String {
     let share = if under_tool() { 10 } else { 1 };
     (all / share).to_string()
 }
 
-/// Whether programs are compiled for a tool, or run under one.
+/// Returns whether programs are compiled for a tool, or run under one.
 pub fn under_tool() -> bool {
     let tool = ["C_TESTS_FLAGS", "C_TESTS_RUNNER"].map(|name| !words(name).is_empty());
     tool.contains(&true)
 }
 
-/// An environment variable, split at blanks; empty when it is not set.
+/// Splits an environment variable at blanks; empty where it is not set.
 fn words(variable: &str) -> Vec<String> {
     std::env::var(variable).unwrap_or_default().split_whitespace().map(String::from).collect()
 }

@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Checks that tell what failed and where, and the random numbers of these tests. */
+/* Checks that report their failures, and random numbers. */
 
 #ifndef TESTS_CHECK_H
 #define TESTS_CHECK_H
@@ -13,24 +13,20 @@
 #include <stdio.h>
 #include <string.h>
 
-#ifndef CHECKS_SHOWN
-#define CHECKS_SHOWN 20
-#endif
-
 static unsigned long checks_made, checks_failed;
 
-/* CHECK(condition, format, ...): goes on after a failure, shows the first CHECKS_SHOWN. */
+/* Counts a check, and prints the first 20 failures: CHECK(condition, format, ...). */
 #define CHECK(condition, ...)                                          \
     do {                                                               \
         checks_made++;                                                 \
-        if (!(condition) && checks_failed++ < CHECKS_SHOWN) {                    \
+        if (!(condition) && checks_failed++ < 20) {                    \
             printf("%s:%d: not %s: ", __FILE__, __LINE__, #condition); \
             printf(__VA_ARGS__);                                       \
             printf("\n");                                              \
         }                                                              \
     } while (0)
 
-/* Exit code of main. */
+/* Prints the number of checks and returns the exit code. */
 static inline int checks_end(void)
 {
     printf("%lu checks, %lu failed\n", checks_made, checks_failed);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The contract of libccd.so.2, line by line: symbols and ABI against the installed
-//! library, headers against the installed headers, behaviour in C programs.
+//! The contract of libccd.so.2: symbols and ABI against the installed library, headers against the
+//! installed headers, behaviour in C programs.
 
 #[path = "../../harness/mod.rs"]
 mod harness;
@@ -10,11 +10,11 @@ mod harness;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use harness::{Executable, Precision, Program};
+use harness::{Precision, Program};
 
 const NO_ARGS: [&str; 0] = [];
 
-/// The functions of the table in calls.h, and whether they are the extension's.
+/// Returns the functions of the table in calls.h, and whether they belong to the extension.
 fn calls() -> Vec<(&'static str, bool)> {
     let rows = include_str!("../../harness/calls.h").lines();
     let rows = rows.filter_map(|line| line.trim_start().strip_prefix("X(")).filter(|row| row.starts_with("ccd"));
@@ -25,24 +25,23 @@ fn calls() -> Vec<(&'static str, bool)> {
     .collect()
 }
 
-/// A program that includes everything it needs from this directory.
+/// Returns a program of this directory.
 fn program(name: &str) -> Program {
     Program::c(name).source(format!("tests/contract/{name}.c")).flag("-pedantic").flag("-Werror")
 }
 
-/// A program that runs on this library alone.
+/// Returns a program that runs on this library alone.
 fn alone(name: &str) -> Program {
     program(name).flag("-DOURS_ALONE").link_ours_shared()
 }
 
-/// Debian's libccd is double: comparisons with it are made in the double run. And on
-/// x86-64: for other processors it is compiled to round otherwise than its headers say,
-/// with fused operations or in 80 bits.
-fn compared() -> bool {
+/// Returns whether results are compared with Debian's libccd: it is double, and for processors other
+/// than x86-64 it is compiled to round differently, with fused operations or in 80 bits.
+fn is_compared() -> bool {
     Precision::CURRENT == Precision::Double && cfg!(target_arch = "x86_64")
 }
 
-/// Output of a tool about a file.
+/// Runs a tool on a file and returns its output.
 fn output(command: &str, args: &[&str], file: &Path) -> String {
     let mut tool = harness::binutils(command);
     harness::must_succeed(tool.args(args).arg(file), command).stdout
@@ -52,7 +51,7 @@ fn ours(file: &str) -> PathBuf {
     harness::library(Precision::CURRENT).dir.join(file)
 }
 
-/// The installed libccd.so.2, as the dynamic linker finds it.
+/// Returns the installed libccd.so.2 that the dynamic linker finds.
 fn installed() -> PathBuf {
     program("objects")
         .precision(Precision::Double)
@@ -64,7 +63,7 @@ fn installed() -> PathBuf {
 
 // --- symbols ------------------------------------------------------------------
 
-/// Name, kind and size of a library's dynamic symbols; the size of data only.
+/// Returns name, kind and, of data, size of a library's dynamic symbols.
 fn dynamic_symbols(library: &Path) -> BTreeSet<String> {
     let symbols = output("readelf", &["--dyn-syms", "-W"], library);
     let symbol = |line: &str| {
@@ -80,7 +79,7 @@ fn dynamic_symbols(library: &Path) -> BTreeSet<String> {
 }
 
 #[test]
-fn shared_library_exports_libccd_s_symbols_and_the_extension() {
+fn symbols_are_those_of_libccd_and_the_extension() {
     let mut expected: BTreeSet<String> = dynamic_symbols(&installed());
     assert_eq!(expected.len(), 18 + 3);
     let function = |name: &str| format!("{name} FUNC DEFAULT ");
@@ -91,11 +90,11 @@ fn shared_library_exports_libccd_s_symbols_and_the_extension() {
     assert_eq!(dynamic_symbols(&ours("libccd.so")), expected);
 }
 
-/// Every call of the table is in C++ too, and called from Rust under Miri; those of the extension
-/// are declared by its headers.
+/// Checks that every call of the table has a C++ form and is called by the Rust tests, which Miri runs,
+/// and that the extension's headers declare the calls of the extension.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn every_call_is_everywhere() {
+fn calls_are_in_every_interface() {
     let read = |file: &str| std::fs::read_to_string(harness::root().join(file)).expect(file);
     let headers = read("include/ccd/warm.h") + &read("include/ccd/paper.h");
     let places = [("api.rs", read("c-tests/tests/extension/api.rs")), ("ccd.hpp", read("include/ccd/ccd.hpp"))];
@@ -104,12 +103,12 @@ fn every_call_is_everywhere() {
         let call = format!("{name}(");
         assert_eq!(headers.contains(&call), is_extension, "{name}");
         for (place, text) in &places {
-            // In C++ MPR's calls are their warm forms, with or without a state.
+            // The C++ forms of MPR's calls are the warm ones.
             let is_c_alone = !is_extension && !name.starts_with("ccdGJK");
-            // Called, or handed over to be called.
-            let ways = ["({})", "({},", ", {})", ", {},"].map(|way| way.replace("{}", name));
-            let named = text.contains(&call) || ways.iter().any(|way| text.contains(way));
-            assert!(named || *place == "ccd.hpp" && is_c_alone, "{place}: {name}");
+            // Called, or passed as an argument.
+            let arguments = ["({})", "({},", ", {})", ", {},"].map(|form| form.replace("{}", name));
+            let is_used = text.contains(&call) || arguments.iter().any(|form| text.contains(form));
+            assert!(is_used || *place == "ccd.hpp" && is_c_alone, "{place}: {name}");
         }
     }
 }
@@ -129,13 +128,12 @@ fn archive_defines_no_other_ccd_symbol() {
     assert_eq!(names(archive), names(exported));
 }
 
-/// No function of the library can panic. With the first that could, Rust's messages and
-/// backtraces would be linked: 300 KB. Where a bound is not seen by the compiler, and which
-/// function it stands in, the test tells.
+/// Checks that no function of the library can panic: the first that could would link Rust's messages
+/// and backtraces, 300 KB. Names the functions whose bounds the compiler does not prove.
 #[test]
 fn no_panic_is_linked() {
     let symbols = output("nm", &[], &ours("libccd.so"));
-    assert!(symbols.contains(" t "), "no local symbols: nothing to see");
+    assert!(symbols.contains(" t "), "no local symbols");
     if !symbols.contains("panicking") {
         return;
     }
@@ -157,7 +155,7 @@ fn no_panic_is_linked() {
 }
 
 #[test]
-fn soname_is_libccd_s() {
+fn soname_is_that_of_libccd() {
     for library in [ours("libccd.so"), installed()] {
         let dynamic = output("readelf", &["-d"], &library);
         assert!(dynamic.contains("Library soname: [libccd.so.2]"), "{dynamic}");
@@ -167,10 +165,10 @@ fn soname_is_libccd_s() {
 
 #[cfg(target_arch = "x86_64")]
 #[test]
-fn executables_reach_the_data_by_copy_relocations() {
+fn data_is_linked_by_copy_relocations() {
     let mut texts = BTreeSet::new();
     let compiler = harness::compiler(false).get_compiler();
-    // clang reaches data of a library through a table of addresses unless told otherwise.
+    // clang accesses data of a library through the global offset table by default.
     let direct = if compiler.is_like_clang() { "-fdirect-access-external-data" } else { "" };
     for flags in [["-fPIE", "-pie"], ["-fno-pie", "-no-pie"]] {
         let build = |program: Program| {
@@ -178,7 +176,7 @@ fn executables_reach_the_data_by_copy_relocations() {
             flags.fold(program, Program::flag).build()
         };
         let mut programs = vec![build(program("objects").link_ours_shared())];
-        if compared() {
+        if is_compared() {
             let system = build(program("objects").system_headers().link_system());
             programs.push(system.swapped());
             programs.push(system);
@@ -196,12 +194,12 @@ fn executables_reach_the_data_by_copy_relocations() {
             texts.insert(program.run(NO_ARGS).stdout);
         }
     }
-    assert_eq!(texts.len(), 1, "the same data whatever the library and the link");
+    assert_eq!(texts.len(), 1, "other data in another library or link");
 }
 
 // --- headers ------------------------------------------------------------------
 
-/// All of libccd's headers in a directory, one after the other.
+/// Returns the concatenated text of libccd's headers in a directory.
 fn headers(include: &Path) -> String {
     let read = |name: &str| {
         let path = include.join(format!("ccd/{name}.h"));
@@ -210,8 +208,8 @@ fn headers(include: &Path) -> String {
     ["ccd", "ccd_export", "compiler", "config", "quat", "vec3"].map(read).concat()
 }
 
-/// Every identifier of libccd's: types, tags, functions, macros. (That it stands in no comment alone
-/// the compiler sees: each is in headers.c.)
+/// Returns libccd's identifiers in a text: types, tags, functions, macros. (headers.c uses each, so that
+/// none is in a comment alone.)
 fn names(text: &str) -> BTreeSet<&str> {
     text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
         .filter(|word| {
@@ -223,7 +221,7 @@ fn names(text: &str) -> BTreeSet<&str> {
 
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn headers_have_every_name_of_libccd_s_and_every_name_is_compared() {
+fn headers_have_all_names_of_libccd_and_all_are_compared() {
     let theirs = headers(Path::new("/usr/include"));
     let ours = headers(&harness::root().join("include"));
     let (theirs, ours) = (names(&theirs), names(&ours));
@@ -235,7 +233,7 @@ fn headers_have_every_name_of_libccd_s_and_every_name_is_compared() {
     let program = names(&program);
     let exported = dynamic_symbols(&installed());
     let exported: Vec<_> = exported.iter().filter_map(|s| s.split(' ').next()).collect();
-    // Guards; and what who builds a libccd defines, not who includes it.
+    // Include guards, and macros that the build of libccd defines, not its users.
     let guard = |name: &str| name.ends_with("_H__") || name.ends_with("_H");
     let builders = ["ccd_EXPORTS", "CCD_STATIC_DEFINE"];
     let mut not_compared = theirs.difference(&program);
@@ -245,7 +243,7 @@ fn headers_have_every_name_of_libccd_s_and_every_name_is_compared() {
 
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn headers_compute_what_libccd_s_do() {
+fn headers_compute_the_same_as_libccd() {
     let single_config = harness::root().join("c-tests/tests/contract/single");
     for (program, theirs, ours) in [
         (Program::c("headers"), "c99", "c99"),
@@ -270,7 +268,6 @@ fn headers_compute_what_libccd_s_do() {
     }
 }
 
-/// No warning at all, so none that libccd's do not give.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn headers_compile_without_warnings() {
@@ -305,35 +302,30 @@ fn headers_compile_without_warnings() {
 // --- behaviour ------------------------------------------------------------------
 
 #[test]
-fn nearest_points_of_segments_and_triangles() {
-    let nearest = match compared() {
-        true => program("point_distance").link_ours_renamed_and_system(),
-        false => alone("point_distance"),
-    };
-    nearest.build().run([harness::rounds(20_000)]);
+fn distances_of_a_point_to_segments_and_triangles() {
+    alone("point_distance").build().run([harness::rounds(20_000)]);
 }
 
-/// On this library, and where they are compared on libccd too: the same elements in the same order.
-fn polytope(library: fn(Program) -> Program) -> Executable {
-    let program = program("polytope").standard("gnu99");
-    library(program).build()
+fn polytope_program() -> Program {
+    program("polytope").standard("gnu99")
 }
 
+/// Checks the polytope functions, whose elements are the same in the same order on libccd.
 #[test]
 fn polytopes() {
     let rounds = [harness::rounds(200)];
-    let ours = polytope(Program::link_ours_shared).run(&rounds).stdout;
-    if compared() {
-        let theirs = polytope(Program::link_system).run(&rounds).stdout;
+    let ours = polytope_program().link_ours_shared().build().run(&rounds).stdout;
+    if is_compared() {
+        let theirs = polytope_program().link_system().build().run(&rounds).stdout;
         assert!(ours == theirs, "other polytopes than libccd's");
     }
 }
 
-/// FCL's EPA runs on the polytope functions: what the same calls take on both libraries.
-/// Instructions are exact, time is not.
+/// Compares the instructions of the polytope functions, which FCL's EPA calls, with libccd's. (Counts of
+/// instructions are exact, times are not.)
 #[test]
-fn polytope_functions_take_no_more_instructions_than_libccd_s() {
-    if !compared() {
+fn polytope_functions_take_no_more_instructions_than_libccd() {
+    if !is_compared() {
         println!("skipped: Debian's libccd is double, and this is compared on x86-64");
         return;
     }
@@ -341,23 +333,21 @@ fn polytope_functions_take_no_more_instructions_than_libccd_s() {
         println!("skipped: valgrind is not installed, or not for this processor");
         return;
     }
-    let counted = |library: fn(Program) -> Program| {
-        let plain = library(program("polytope").standard("gnu99").without_tools());
-        let mut plain = plain.build().command();
-        let counted = harness::callgrind(plain.arg("20"), &[]);
-        let (_, counts) = counted.unwrap_or_else(|why| panic!("{why}"));
-        counts.concat()
+    let profile = |link: fn(Program) -> Program| {
+        let mut command = link(polytope_program().without_tools()).build().command();
+        let (_, profiles) = harness::callgrind(command.arg("20"), &[]).unwrap_or_else(|error| panic!("{error}"));
+        profiles.concat()
     };
-    // A call is three lines: `cfn=FUNCTION`, `calls=...`, and what it took at the end of one.
-    let taken = |counts: &str, function: &str| -> u64 {
-        let (lines, call) = (counts.lines(), format!("cfn={function}"));
+    // A call is three lines: `cfn=FUNCTION`, `calls=...`, and one that ends in its instructions.
+    let instructions = |profile: &str, function: &str| -> u64 {
+        let (lines, call) = (profile.lines(), format!("cfn={function}"));
         let costs = lines.clone().zip(lines.skip(2)).filter(|(first, _)| *first == call);
         let costs = costs.map(|(_, cost)| cost.rsplit(' ').next().unwrap_or_default());
         costs.map(|cost| cost.parse::<u64>().expect("a number")).sum()
     };
-    let (theirs, ours) = (counted(Program::link_system), counted(Program::link_ours_shared));
+    let profiles = [profile(Program::link_system), profile(Program::link_ours_shared)];
     for name in ["AddVertex", "AddEdge", "AddFace", "Nearest", "RecomputeDistances"] {
-        let [theirs, ours] = [&theirs, &ours].map(|counts| taken(counts, &format!("ccdPt{name}")));
+        let [theirs, ours] = profiles.each_ref().map(|profile| instructions(profile, &format!("ccdPt{name}")));
         println!("ccdPt{name}: libccd {theirs}, this library {ours} instructions");
         assert!(0 < ours && ours <= theirs, "ccdPt{name}: libccd {theirs}, ours {ours}");
     }
@@ -369,9 +359,8 @@ fn callbacks() {
 }
 
 #[test]
-fn answers_to_any_input() {
-    let questions = alone("arguments").build();
-    questions.run([harness::rounds(100)]);
+fn arguments() {
+    alone("arguments").build().run([harness::rounds(100)]);
 }
 
 #[test]
@@ -392,11 +381,6 @@ fn longjmp_out_of_callbacks() {
 
 #[test]
 fn exceptions_out_of_callbacks() {
-    let exceptions = Program::cpp("exceptions")
-        .source("tests/contract/exceptions.c")
-        .flag("-pedantic")
-        .flag("-Werror")
-        .flag("-DOURS_ALONE");
-    exceptions.clone().link_ours_shared().build().run([harness::rounds(20)]);
-    exceptions.link_ours_static().build().run([harness::rounds(20)]);
+    alone("exceptions").as_cpp().build().run([harness::rounds(20)]);
+    alone("exceptions").as_cpp().link_ours_static().build().run([harness::rounds(20)]);
 }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Every entry point that runs callbacks, asked in one way, so that a test can go through all
- * of them. Compiled with -DOURS_ALONE. */
+/* Every entry point that runs callbacks, called in one way, so that a test can loop over all of them.
+ * Compiled with -DOURS_ALONE. */
 
 #ifndef CONTRACT_EVERY_CALL_H
 #define CONTRACT_EVERY_CALL_H
@@ -12,90 +12,106 @@
 #include "polytope.h"
 #include "harness/shapes.h"
 
+/* Memory for the outputs of any call. */
+typedef struct {
+    ccd_penetration_t penetration;
+    ccd_distance_t distance;
+    ccd_contact_t contacts[4];
+    ccd_real_t depth;
+    ccd_vec3_t dir, pos;
+} results_t;
+
+/* The outputs that the calls have in common. */
 typedef struct {
     ccd_real_t depth;
-    ccd_vec3_t dir, pos, normal; /* normal: of the extension's alone */
+    ccd_vec3_t dir, pos, normal; /* normal: of the extension alone */
     support_t support;
 } outputs_t;
 
 /* __ccdSupport as an entry like the others. */
 static const call_t support_entry = {"__ccdSupport", PAIR_CALL_COUNT, 0, 0, 0, 0, 0};
 
-static inline int stored(int code, const ccd_penetration_t *p, outputs_t *out)
+/* Returns valid arguments of a call, without a state, whose outputs are in `results`. */
+static inline call_args_t valid_arguments(const call_t *entry, results_t *results)
 {
-    if (code == CCD_HIT || code == CCD_LIMIT) {
-        out->depth = p->depth;
-        out->dir = p->dir;
-        out->normal = p->normal;
-        out->pos = p->pos;
-        return CCD_HIT;
-    }
-    return code;
+    static const ccd_vec3_t along = {{1, 2, -2}}, plane = {{0, 0, 3}}, normal = {{2, 0, 0}};
+    call_args_t args;
+    memset(&args, 0, sizeof args);
+    args.along = entry->number == CALL_PLANAR ? &plane : entry->number == CALL_CONTACTS ? &normal : &along;
+    args.max_distance = INFINITY;
+    args.slop = CCD_REAL(1e-3);
+    args.want = CCD_WANT_ALL;
+    args.max = 4;
+    args.depth = &results->depth;
+    args.dir = &results->dir;
+    args.pos = &results->pos;
+    args.penetration = &results->penetration;
+    args.distance = &results->distance;
+    args.contacts = results->contacts;
+    return args;
 }
 
-static inline int stored_distance(int code, const ccd_distance_t *d, outputs_t *out)
+/* Copies the result of a call with a struct of its own, if it has one. Returns the code, CCD_LIMIT as a hit or,
+ * where a distance is not negative, a miss. */
+static inline int store_result(const call_t *entry, int code, const results_t *results, outputs_t *out)
 {
-    /* Open bounds have a sign too. */
-    if (code == CCD_LIMIT)
-        code = d->distance < 0 ? CCD_HIT : CCD_MISS;
-    if (code == CCD_HIT) {
+    const ccd_distance_t *d = &results->distance;
+    const ccd_penetration_t *p = &results->penetration;
+    if (entry->kind == KIND_DISTANCE) {
+        if (code == CCD_LIMIT)
+            code = d->distance < 0 ? CCD_HIT : CCD_MISS;
+        if (code != CCD_HIT)
+            return code;
         out->depth = -d->distance;
         out->dir = d->normal;
         for (int i = 0; i < 3; i++)
             out->pos.v[i] = (d->point1.v[i] + d->point2.v[i]) / 2;
+    } else if (entry->kind == KIND_PENETRATION || entry->kind == KIND_PENETRATION_ALONG) {
+        if (code != CCD_HIT && code != CCD_LIMIT)
+            return code;
+        out->depth = p->depth;
+        out->dir = p->dir;
+        out->normal = p->normal;
+        out->pos = p->pos;
+        code = CCD_HIT;
     }
     return code;
 }
 
-/* Asks an entry for what is wanted. The extension's are asked from a cold state, and with that state
- * again; out is the second answer. */
-static inline int run_wanting(int want, const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+/* Runs a call and requests the results `want`. A call of the extension runs from a cold state, and again from the
+ * state that it left, for `out`. */
+static inline int run_wanting(unsigned want, const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
-    const ccd_vec3_t along = {{1, 2, -2}}, plane = {{0, 0, 3}}, up = {{0, 1, 0}};
-    ccd_contact_t contacts[4];
-    ccd_manifold_cache_t cache;
-    ccd_penetration_t full;
-    ccd_distance_t distance;
+    const ccd_vec3_t up = {{0, 1, 0}};
+    ccd_manifold_cache_t memory;
+    results_t results;
     ccd_warm_t warm;
-    call_args_t rest;
-    int number = entry->number, code;
-    if (number == PAIR_CALL_COUNT) {
+    if (entry->number == PAIR_CALL_COUNT) {
         __ccdSupport(a, b, &up, ccd, &out->support);
         return 0;
     }
     memset(&warm, 0, sizeof warm);
-    memset(&rest, 0, sizeof rest);
-    rest.warm = &warm;
-    rest.along = number == CALL_PLANAR ? &plane : &along;
-    rest.max_distance = INFINITY;
-    rest.slop = CCD_REAL(0.01);
-    rest.want = want;
-    rest.max = 4;
-    rest.penetration = &full;
-    rest.distance = &distance;
-    memset(&cache, 0, sizeof cache);
-    rest.cache = &cache;
-    rest.contacts = contacts;
-    if (number == CALL_CONTACTS) {
-        code = call_library(number, a, b, ccd, &rest);
-        if (code < 1)
-            return code;
-        /* Contacts whatever the pose is; what it returns is whether the pair overlaps. */
-        number = CALL_LOCAL;
+    memset(&memory, 0, sizeof memory);
+    call_args_t args = valid_arguments(entry, &results);
+    args.warm = &warm;
+    args.cache = &memory;
+    args.want = want;
+    args.depth = &out->depth;
+    args.dir = &out->dir;
+    args.pos = want & CCD_WANT_POS ? &out->pos : NULL;
+    if (entry->number == CALL_CONTACTS) {
+        int count = call_library(entry->number, a, b, ccd, &args);
+        if (count < 1)
+            return count;
+        /* Contacts do not depend on an overlap: another call determines it. */
+        entry = &call_table[CALL_LOCAL];
     }
     if (entry->traits & EXTENSION)
-        call_library(number, a, b, ccd, &rest);
-    rest.depth = &out->depth;
-    rest.dir = &out->dir;
-    rest.pos = want & CCD_WANT_POS ? &out->pos : NULL;
-    code = call_library(number, a, b, ccd, &rest);
-    if (number == CALL_DISTANCE)
-        return stored_distance(code, &distance, out);
-    /* The others of the extension fill a struct, and libccd's the outputs themselves. */
-    return (entry->traits & EXTENSION) && (entry->traits & STORES) && number != CALL_MPR_WARM ? stored(code, &full, out) : code;
+        call_library(entry->number, a, b, ccd, &args);
+    return store_result(entry, call_library(entry->number, a, b, ccd, &args), &results, out);
 }
 
-/* The same for everything. */
+/* Runs a call and requests all results. */
 static inline int run(const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     return run_wanting(CCD_WANT_ALL, entry, a, b, ccd, out);
@@ -103,7 +119,7 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
 
 /* --- pairs ------------------------------------------------------------------ */
 
-/* A random shape of unit size, near the origin. */
+/* Returns a random shape of unit size near the origin. */
 static inline shape_t random_shape(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, -1, -1, 0, 0, -1, -1, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5};
@@ -115,7 +131,7 @@ static inline shape_t random_shape(void)
     return s;
 }
 
-/* A random polygon in the plane z = 0, for a planar query. */
+/* Returns a random polygon in the plane z = 0. */
 static inline shape_t random_polygon(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, -1, 0.2f, 0, -0.3f, -0.8f, 0, 0.5f, -0.9f, 0};
@@ -126,8 +142,8 @@ static inline shape_t random_polygon(void)
     return s;
 }
 
-/* A pair that certainly overlaps (deep) or certainly does not, and its query. What the
- * entry does not use is NULL. */
+/* Makes a pair that overlaps deeply or is far apart, and its ccd_t, in which callbacks that the call does not use
+ * are NULL. */
 static inline void random_pair(const call_t *entry, int overlapping, shape_t *a, shape_t *b, ccd_t *ccd)
 {
     const int planar = entry->number == CALL_PLANAR;

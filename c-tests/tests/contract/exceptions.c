@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Leaving a query from inside of a callback, of any entry point: by longjmp; compiled as C++, by an
- * exception, which reaches the caller's catch as it was thrown and runs the destructors on its way.
- * The program goes on, and the next query answers as ever. */
+/* Leaves every query from a callback: by longjmp; compiled as C++, by an exception, which reaches the
+ * caller unchanged and runs the destructors. Checks that the next query has the same result as before. */
 
 #include "every_call.h"
 
@@ -13,22 +12,22 @@ static int calls_left, destroyed;
 #include <stdexcept>
 #include <string>
 
-struct Watcher {
-    ~Watcher() { destroyed++; }
+struct Destroyed {
+    ~Destroyed() { destroyed++; }
 };
 
 static void leave(void)
 {
-    Watcher watcher;
+    Destroyed in_callback;
     throw std::runtime_error("out of here");
 }
 
-/* Whether the query left. */
+/* Runs a query and returns whether a callback left it. */
 static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
 {
     destroyed = 0;
     try {
-        Watcher watcher;
+        Destroyed in_caller;
         run(entry, a, b, ccd, out);
         return 0;
     } catch (const std::runtime_error &e) {
@@ -40,24 +39,24 @@ static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const
 #else
 #include <setjmp.h>
 
-static jmp_buf home;
+static jmp_buf caller;
 
 static void leave(void)
 {
     destroyed = 0;
-    longjmp(home, 7);
+    longjmp(caller, 7);
 }
 
 static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
 {
-    if (setjmp(home) != 0)
+    if (setjmp(caller) != 0)
         return 1;
     run(entry, a, b, ccd, out);
     return 0;
 }
 #endif
 
-/* The how-many-th callback is the last. */
+/* Leaves the query at the last of `calls_left` callbacks. */
 static void count_down(void)
 {
     if (--calls_left == 0)
@@ -105,7 +104,7 @@ static void test(const call_t *entry, int rounds)
             calls_left = 0;
             memset(&out, 0, sizeof out);
             int code = run(entry, &a, &b, &ccd, &out);
-            CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after being left", entry->name);
+            CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after a query was left", entry->name);
         }
         CHECK(last > 1, "%s runs callbacks", entry->name);
     }

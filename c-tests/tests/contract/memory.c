@@ -1,12 +1,11 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Who owns which memory. This program's own malloc counts blocks and fails on demand; the
- * library must use it, as it must use the consumer's.
+/* Counts the blocks that the library allocates from this program's own malloc, which fails on request.
  *
- * Polytope nodes: one block of exactly the node's size each, and free() and the library may
- * free each other's. Queries: no block at all in MPR and in yes-or-no queries; elsewhere
- * none is left behind, and without memory the answer is -2 with outputs untouched. */
+ * A polytope's element is one block of exactly its size, which the program may free, and the library
+ * frees elements of the program. MPR's and intersection queries allocate nothing; other queries free
+ * all blocks, and without memory libccd's return -2 and leave their outputs unchanged. */
 
 #include "every_call.h"
 #include <stddef.h>
@@ -17,31 +16,24 @@ void *__libc_realloc(void *block, size_t size);
 void *__libc_memalign(size_t alignment, size_t size);
 void __libc_free(void *block);
 
-enum { MOST = 4096 };
-static struct { void *block; size_t size; } live[MOST];
-static int watching, live_count;
-static unsigned long taken, fail_at;
-static size_t last_size;
+enum { MAX_BLOCKS = 4096 };
+static struct { void *block; size_t size; } live[MAX_BLOCKS];
+static int counting, live_count;
+static unsigned long allocations, fail_at;
 
-static void *took(void *block, size_t size)
+static void *add_block(void *block, size_t size)
 {
-    if (watching && block != NULL && live_count < MOST) {
+    if (counting && block != NULL && live_count < MAX_BLOCKS) {
         live[live_count].block = block;
         live[live_count++].size = size;
-        last_size = size;
     }
     return block;
 }
 
-static int may_take(void)
-{
-    if (!watching)
-        return 1;
-    taken++;
-    return taken != fail_at;
-}
+/* Counts an allocation; returns 0 where it shall fail. */
+static int count_allocation(void) { return !counting || ++allocations != fail_at; }
 
-static void gave(void *block)
+static void remove_block(void *block)
 {
     for (int i = 0; i < live_count && block != NULL; i++)
         if (live[i].block == block) {
@@ -50,45 +42,53 @@ static void gave(void *block)
         }
 }
 
-void *malloc(size_t size) { return may_take() ? took(__libc_malloc(size), size) : NULL; }
-void *calloc(size_t n, size_t size) { return may_take() ? took(__libc_calloc(n, size), n * size) : NULL; }
+void *malloc(size_t size) { return count_allocation() ? add_block(__libc_malloc(size), size) : NULL; }
+void *calloc(size_t n, size_t size) { return count_allocation() ? add_block(__libc_calloc(n, size), n * size) : NULL; }
 
 void *realloc(void *block, size_t size)
 {
-    if (!may_take())
+    if (!count_allocation())
         return NULL;
-    gave(block);
+    remove_block(block);
     void *moved = __libc_realloc(block, size);
-    return took(moved, size);
+    return add_block(moved, size);
 }
 
 int posix_memalign(void **block, size_t alignment, size_t size)
 {
-    *block = may_take() ? took(__libc_memalign(alignment, size), size) : NULL;
+    *block = count_allocation() ? add_block(__libc_memalign(alignment, size), size) : NULL;
     return *block == NULL ? 12 /* ENOMEM */ : 0;
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
 {
-    return may_take() ? took(__libc_memalign(alignment, size), size) : NULL;
+    return count_allocation() ? add_block(__libc_memalign(alignment, size), size) : NULL;
 }
 
 void free(void *block)
 {
-    gave(block);
+    remove_block(block);
     __libc_free(block);
 }
 
-/* From here on blocks are counted, and the fail-th (from 1; 0 for none) is refused. */
-static void watch(unsigned long fail)
+/* Starts to count; the fail-th allocation (from 1; 0: none) fails. */
+static void start_counting(unsigned long fail)
 {
-    watching = 1;
+    counting = 1;
     live_count = 0;
-    taken = 0;
+    allocations = 0;
     fail_at = fail;
 }
 
-static void check_nodes(void)
+static void append(list_t *head, list_t *link)
+{
+    link->prev = head->prev;
+    link->next = head;
+    head->prev->next = link;
+    head->prev = link;
+}
+
+static void check_elements(void)
 {
     pt_t pt, before;
     support_t s;
@@ -96,9 +96,9 @@ static void check_nodes(void)
     pt_edge_t *e[6];
     pt_face_t *f[4];
     memset(&s, 0, sizeof s);
-    watch(0);
+    start_counting(0);
     ccdPtInit(&pt);
-    CHECK(taken == 0, "ccdPtInit takes no memory");
+    CHECK(allocations == 0, "ccdPtInit allocates nothing");
     for (int i = 0; i < 4; i++) {
         s.v = random_vec3(1);
         v[i] = ccdPtAddVertex(&pt, &s);
@@ -115,38 +115,30 @@ static void check_nodes(void)
         CHECK(live_count == i + 11 && live[i + 10].block == f[i] && live[i + 10].size == sizeof *f[i], "a face is a block");
     }
 
-    /* The consumer frees what the library took ... */
+    /* This program frees blocks of the library ... */
     pt_delete_face(&pt, f[1]);
     pt_delete_face(&pt, f[2]);
     pt_delete_edge(&pt, e[4]);
-    CHECK(live_count == 11, "freed by the consumer");
+    CHECK(live_count == 11, "freed by the program");
 
-    /* ... and the library frees what the consumer took. */
+    /* ... and the library frees a block of this program. */
     e[4] = (pt_edge_t *)malloc(sizeof *e[4]);
     memset(e[4], 0, sizeof *e[4]);
     e[4]->el.type = PT_EDGE;
     e[4]->vertex[0] = v[3];
     e[4]->vertex[1] = v[1];
-    for (int i = 0; i < 2; i++) {
-        list_t *link = &e[4]->vertex_list[i], *head = &e[4]->vertex[i]->edges;
-        link->prev = head->prev;
-        link->next = head;
-        head->prev->next = link;
-        head->prev = link;
-    }
-    e[4]->el.list.prev = pt.edges.prev;
-    e[4]->el.list.next = &pt.edges;
-    pt.edges.prev->next = &e[4]->el.list;
-    pt.edges.prev = &e[4]->el.list;
-    CHECK(live_count == 12, "a node of the consumer's");
-    taken = 0;
+    append(&v[3]->edges, &e[4]->vertex_list[0]);
+    append(&v[1]->edges, &e[4]->vertex_list[1]);
+    append(&pt.edges, &e[4]->el.list);
+    CHECK(live_count == 12, "an element of the program");
+    allocations = 0;
     ccdPtRecomputeDistances(&pt);
     ccdPtNearest(&pt);
-    CHECK(taken == 0, "searching takes no memory");
+    CHECK(allocations == 0, "searching allocates nothing");
     ccdPtDestroy(&pt);
     CHECK(live_count == 0, "%d blocks left after ccdPtDestroy", live_count);
 
-    /* Refused: NULL, and nothing has changed. */
+    /* A failed allocation returns NULL and changes nothing. */
     ccdPtInit(&pt);
     for (int i = 0; i < 3; i++) {
         s.v = random_vec3(1);
@@ -155,15 +147,15 @@ static void check_nodes(void)
     for (int i = 0; i < 3; i++)
         e[i] = ccdPtAddEdge(&pt, v[i], v[(i + 1) % 3]);
     before = pt;
-    watch(1);
-    CHECK(ccdPtAddVertex(&pt, &s) == NULL && taken == 1, "no memory for a vertex");
-    watch(1);
-    CHECK(ccdPtAddEdge(&pt, v[0], v[1]) == NULL && taken == 1, "no memory for an edge");
-    watch(1);
-    CHECK(ccdPtAddFace(&pt, e[0], e[1], e[2]) == NULL && taken == 1, "no memory for a face");
+    start_counting(1);
+    CHECK(ccdPtAddVertex(&pt, &s) == NULL && allocations == 1, "no memory for a vertex");
+    start_counting(1);
+    CHECK(ccdPtAddEdge(&pt, v[0], v[1]) == NULL && allocations == 1, "no memory for an edge");
+    start_counting(1);
+    CHECK(ccdPtAddFace(&pt, e[0], e[1], e[2]) == NULL && allocations == 1, "no memory for a face");
     CHECK(same_bits(&pt, &before, sizeof pt) && e[0]->faces[0] == NULL && list_length(&v[0]->edges) == 2,
-          "a refused element leaves no trace");
-    watch(0);
+          "a failed allocation changes nothing");
+    start_counting(0);
     ccdPtDestroy(&pt);
 }
 
@@ -178,37 +170,35 @@ static void check_queries(void)
             ccd_t ccd;
             random_pair(entry, overlapping, &a, &b, &ccd);
             ccd.epa_tolerance = ccd.mpr_tolerance = (ccd_real_t)1e-5;
-            watch(0);
+            start_counting(0);
             int code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
             CHECK(live_count == 0, "%s left %d blocks behind", entry->name, live_count);
-            /* A distance takes none while the objects are apart. */
+            /* A distance allocates only for an overlap. */
             if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == CALL_DISTANCE))
-                CHECK(taken == 0, "%s took %lu blocks", entry->name, taken);
-            for (unsigned long fail = 1; fail <= (taken < 40 ? taken : 40); fail++) {
-                const unsigned long needed = taken;
+                CHECK(allocations == 0, "%s allocated %lu blocks", entry->name, allocations);
+            const unsigned long last_fail = allocations < 40 ? allocations : 40;
+            for (unsigned long fail = 1; fail <= last_fail; fail++) {
                 memset(&out, 0x5a, sizeof out);
                 before = out;
-                watch(fail);
+                start_counting(fail);
                 code = run(entry, &a, &b, &ccd, &out);
                 CHECK(live_count == 0, "%s without memory left %d blocks behind", entry->name, live_count);
                 if (!(entry->traits & EXTENSION)) {
                     CHECK(code == -2, "%s without block %lu returned %d", entry->name, fail, code);
-                    CHECK(same_bits(&out, &before, sizeof out), "%s without memory touched outputs", entry->name);
+                    CHECK(same_bits(&out, &before, sizeof out), "%s without memory wrote outputs", entry->name);
                 }
-                taken = needed;
             }
-            watching = 0;
+            counting = 0;
         }
     }
 }
 
 int main(void)
 {
-    /* stdout's buffer is not the library's. */
-    printf("blocks taken by one query\n");
-    check_nodes();
-    watching = 0;
+    setvbuf(stdout, NULL, _IONBF, 0); /* no block of stdout's is counted */
+    check_elements();
+    counting = 0;
     check_queries();
     return checks_end();
 }

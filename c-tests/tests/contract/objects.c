@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prints the library's data objects bit for bit. Linked in every way an executable can
- * reach data of a shared library, on both libraries. */
+/* Prints the library's data objects bit for bit. Linked with both libraries in every way in which an
+ * executable can access data of a shared library. */
 
 #include <ccd/ccd.h>
 #include <stdio.h>

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The polytope functions, of whichever library is loaded: random sequences of additions,
- * deletions by the user's inline functions, nearest elements set by the user, searches and
- * recomputations. After every step the polytope is held against a model: what
- * was added, in which order, and which element libccd's rule makes nearest given the
- * distances that stand in the elements. The distances are point_distance.c's matter. */
+/* Checks the polytope functions of the loaded library by random sequences of additions, deletions by
+ * the user's inline functions, nearest elements set by the user, searches and recomputations. Each
+ * step compares the polytope with a model: the elements in the order of their addition, and the
+ * nearest one by libccd's rule for the distances in the elements. (point_distance.c checks the
+ * distances themselves.) */
 
 #include "check.h"
 #include "harness/identity.h"
@@ -14,36 +14,35 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { MOST = 512, END = -1 };
+enum { MAX_ELEMENTS = 512, NONE = -1 };
 
-/* Expected contents of the polytopes. Elements are numbered as they were added; a deleted one
- * has type 0. parts: vertices of an edge, edges of a face. sides: faces of an edge. */
+/* Expected element. Elements are numbered in the order of their addition. */
 typedef struct {
-    int type;
-    int parts[3];
-    int sides[2];
+    int type;     /* 0: deleted */
+    int parts[3]; /* vertices of an edge, edges of a face */
+    int sides[2]; /* faces of an edge */
     support_t v;
 } element_t;
 
-static element_t model[MOST];
+static element_t model[MAX_ELEMENTS];
 static int count;
 
-static int ours; /* else libccd, of which less is asked */
+static int ours; /* this library, else libccd, whose distances are not checked */
 
-/* The library's: its polytope, its elements, the nearest by the rule. */
 static pt_t pt;
-static pt_el_t *address[MOST];
-static struct { int element; ccd_real_t dist; int type; } nearest;
+static pt_el_t *address[MAX_ELEMENTS]; /* the library's elements */
+static struct { int element; ccd_real_t dist; int type; } nearest; /* expected */
 
 static int number(const void *element)
 {
     for (int i = 0; i < count; i++)
         if (model[i].type != 0 && element == address[i])
             return i;
-    return END;
+    return NONE;
 }
 
-static void rule(int element)
+/* Applies libccd's rule for the nearest element to one more element. */
+static void update_nearest(int element)
 {
     const pt_el_t *el = address[element];
     if (ccdEq(nearest.dist, el->dist) ? el->type < nearest.type : el->dist < nearest.dist) {
@@ -53,23 +52,23 @@ static void rule(int element)
     }
 }
 
-static void forget(void)
+static void reset_nearest(void)
 {
-    nearest.element = END;
+    nearest.element = NONE;
     nearest.dist = CCD_REAL_MAX;
     nearest.type = PT_FACE;
 }
 
 /* --- the check ------------------------------------------------------------- */
 
-/* A polytope's list holds the living elements of a type, oldest first. */
+/* Checks that a list contains the elements of a type, oldest first. */
 static void check_list(const list_t *head, int type)
 {
     const list_t *link = head->next;
     CHECK(link->prev == head && head->prev->next == head, "circular");
     for (int i = 0; i < count; i++) {
         if (model[i].type == type) {
-            CHECK(link == &address[i]->list, "type %d, element %d in its place", type, i);
+            CHECK(link == &address[i]->list, "type %d, element %d in order", type, i);
             if (link == head)
                 return;
             CHECK(link->next->prev == link, "linked both ways");
@@ -86,12 +85,12 @@ static void check_vertex(int i)
     CHECK(same_bits(&vertex->v, &model[i].v, sizeof vertex->v), "vertex %d keeps its point", i);
     CHECK(same_bits(&vertex->el.witness, &model[i].v.v, sizeof vertex->el.witness), "a vertex's witness is v");
     CHECK(vertex->el.dist == ccdVec3Len2(&model[i].v.v), "a vertex's distance is squared");
-    /* Its edges, oldest first; each by the link of the end that stands here. */
+    /* Its edges, oldest first, each by the link of its end at this vertex. */
     for (int k = 0; k < count; k++) {
         for (int end = 0; end < 2; end++) {
             if (model[k].type == PT_EDGE && model[k].parts[end] == i) {
                 pt_edge_t *edge = (pt_edge_t *)address[k];
-                CHECK(link == &edge->vertex_list[end], "edge %d hangs on vertex %d", k, i);
+                CHECK(link == &edge->vertex_list[end], "edge %d in the list of vertex %d", k, i);
                 link = link->next;
             }
         }
@@ -114,7 +113,7 @@ static void check_polytope(void)
             const pt_edge_t *edge = (const pt_edge_t *)address[i];
             for (int k = 0; k < 2; k++) {
                 CHECK(number(edge->vertex[k]) == model[i].parts[k], "edge %d's vertices", i);
-                CHECK((edge->faces[k] == NULL ? END : number(edge->faces[k])) == model[i].sides[k],
+                CHECK((edge->faces[k] == NULL ? NONE : number(edge->faces[k])) == model[i].sides[k],
                       "edge %d's faces", i);
             }
         } else {
@@ -123,8 +122,8 @@ static void check_polytope(void)
                 CHECK(number(face->edge[k]) == model[i].parts[k], "face %d's edges", i);
         }
     }
-    CHECK((pt.nearest == NULL ? END : number(pt.nearest)) == nearest.element,
-          "nearest is %d, by the rule %d", number(pt.nearest), nearest.element);
+    CHECK((pt.nearest == NULL ? NONE : number(pt.nearest)) == nearest.element,
+          "nearest is %d, expected %d", number(pt.nearest), nearest.element);
     CHECK(pt.nearest_dist == nearest.dist && pt.nearest_type == nearest.type,
           "nearest_dist, nearest_type");
 }
@@ -137,13 +136,13 @@ static int pick(int type)
     for (i = 0; i < count; i++)
         if (model[(start + i) % count].type == type)
             return (start + i) % count;
-    return END;
+    return NONE;
 }
 
 static void added(int type)
 {
     model[count].type = type;
-    rule(count);
+    update_nearest(count);
     count++;
 }
 
@@ -165,17 +164,17 @@ static int add_edge(int a, int b)
 {
     model[count].parts[0] = a;
     model[count].parts[1] = b;
-    model[count].sides[0] = model[count].sides[1] = END;
+    model[count].sides[0] = model[count].sides[1] = NONE;
     address[count] = (pt_el_t *)ccdPtAddEdge(&pt, (pt_vertex_t *)address[a], (pt_vertex_t *)address[b]);
     added(PT_EDGE);
     return count - 1;
 }
 
-/* The edge between two vertices that has a side free; a new one if there is none. */
+/* Returns the edge between two vertices with fewer than two faces, or a new one. */
 static int edge_between(int a, int b)
 {
     for (int i = 0; i < count; i++)
-        if (model[i].type == PT_EDGE && model[i].sides[1] == END
+        if (model[i].type == PT_EDGE && model[i].sides[1] == NONE
             && ((model[i].parts[0] == a && model[i].parts[1] == b) || (model[i].parts[0] == b && model[i].parts[1] == a)))
             return i;
     return random_below(2) ? add_edge(a, b) : add_edge(b, a);
@@ -185,7 +184,7 @@ static void add_face(void)
 {
     int a = pick(PT_VERTEX), b = pick(PT_VERTEX), c = pick(PT_VERTEX), k;
     int edge[3];
-    if (a == END || a == b || b == c || c == a || count > MOST - 8)
+    if (a == NONE || a == b || b == c || c == a || count > MAX_ELEMENTS - 8)
         return;
     edge[0] = edge_between(a, b);
     edge[1] = edge_between(b, c);
@@ -194,7 +193,7 @@ static void add_face(void)
                                              (pt_edge_t *)address[edge[2]]);
     for (k = 0; k < 3; k++) {
         model[count].parts[k] = edge[k];
-        model[edge[k]].sides[model[edge[k]].sides[0] != END] = count;
+        model[edge[k]].sides[model[edge[k]].sides[0] != NONE] = count;
     }
     added(PT_FACE);
 }
@@ -203,7 +202,7 @@ static void deleted(int i)
 {
     model[i].type = 0;
     if (nearest.element == i)
-        nearest.element = END;
+        nearest.element = NONE;
 }
 
 static void delete_face(int i)
@@ -213,7 +212,7 @@ static void delete_face(int i)
         int *sides = model[model[i].parts[k]].sides;
         if (sides[0] == i)
             sides[0] = sides[1];
-        sides[1] = END;
+        sides[1] = NONE;
     }
     deleted(i);
 }
@@ -221,7 +220,7 @@ static void delete_face(int i)
 static void delete_any(void)
 {
     int type = 1 + random_below(3), i = pick(type);
-    if (i == END)
+    if (i == NONE)
         return;
     if (type == PT_FACE) {
         delete_face(i);
@@ -234,11 +233,11 @@ static void delete_any(void)
     }
 }
 
-/* As FCL does when it has found the element itself. */
+/* Sets the nearest element, as FCL does. */
 static void set_nearest(void)
 {
     int i = pick(1 + random_below(3));
-    if (i == END)
+    if (i == NONE)
         return;
     pt.nearest = address[i];
     nearest.element = i;
@@ -249,17 +248,17 @@ static void set_nearest(void)
 static void search(void)
 {
     const pt_el_t *found = ccdPtNearest(&pt);
-    if (nearest.element == END) {
-        forget();
+    if (nearest.element == NONE) {
+        reset_nearest();
         for (int type = PT_VERTEX; type <= PT_FACE; type++)
             for (int i = 0; i < count; i++)
                 if (model[i].type == type)
-                    rule(i);
+                    update_nearest(i);
     }
     CHECK(found == pt.nearest, "returns nearest");
 }
 
-/* The squared distance of an edge or a face of three corners. */
+/* Returns the squared distance of an edge or a triangle. */
 static double distance2(const element_t *e)
 {
     const element_t *one = e->type == PT_FACE ? &model[e->parts[0]] : e, *two = &model[e->parts[1]];
@@ -270,29 +269,29 @@ static double distance2(const element_t *e)
     return (double)ccdVec3PointTriDist2(ccd_vec3_origin, a, b, c, NULL);
 }
 
-/* Moves a vertex behind the library's back and has the distances made anew. */
+/* Moves a vertex and recomputes the distances. */
 static void recompute(void)
 {
     int i = pick(PT_VERTEX), k;
-    if (i == END)
+    if (i == NONE)
         return;
     model[i].v.v = random_vec3(1);
     ((pt_vertex_t *)address[i])->v = model[i].v;
     ccdPtRecomputeDistances(&pt);
     for (k = 0; k < count; k++)
         if (model[k].type > PT_VERTEX) {
-            /* libccd's value depends on the order of the corners, and on whether a witness is asked for. */
+            /* libccd's value depends on the order of the corners, and on the request for a witness. */
             const double dist2 = (double)address[k]->dist, off = sqrt(dist2) - sqrt(distance2(&model[k]));
             CHECK(fabs(off) < 1e-7 || !ours, "a distance off by %g", off);
             CHECK(dist2 == (double)ccdVec3Len2(&address[k]->witness) || !ours, "the witness's distance");
         }
 }
 
-static void refuse(void)
+static void reject_null(void)
 {
     int v = pick(PT_VERTEX), e = pick(PT_EDGE);
-    pt_vertex_t *vertex = v == END ? NULL : (pt_vertex_t *)address[v];
-    pt_edge_t *edge = e == END ? NULL : (pt_edge_t *)address[e];
+    pt_vertex_t *vertex = v == NONE ? NULL : (pt_vertex_t *)address[v];
+    pt_edge_t *edge = e == NONE ? NULL : (pt_edge_t *)address[e];
     CHECK(ccdPtAddEdge(&pt, NULL, vertex) == NULL, "NULL vertex");
     CHECK(ccdPtAddEdge(&pt, vertex, NULL) == NULL, "NULL vertex");
     CHECK(ccdPtAddFace(&pt, NULL, edge, edge) == NULL, "NULL edge");
@@ -300,16 +299,16 @@ static void refuse(void)
     CHECK(ccdPtAddFace(&pt, edge, edge, NULL) == NULL, "NULL edge");
 }
 
-static size_t read_file(const char *name, char *text, size_t most)
+static size_t read_file(const char *name, char *text, size_t size)
 {
     FILE *file = fopen(name, "r");
-    size_t n = file == NULL ? 0 : fread(text, 1, most, file);
-    if (file != NULL)
-        fclose(file);
-    return n;
+    const size_t length = fread(text, 1, size, file);
+    fclose(file);
+    return length;
 }
 
-/* The text, twice in the file after two calls; vertices numbered. The driver compares what both libraries say. */
+/* Prints the polytope's text for the driver, which compares both libraries. Checks that the text is appended to a
+ * file and that vertices are numbered. */
 static void dump(void)
 {
     static char text[1 << 17];
@@ -340,40 +339,31 @@ static void dump(void)
         }
 }
 
+static void add_any_edge(void)
+{
+    const int a = pick(PT_VERTEX), b = pick(PT_VERTEX);
+    /* libccd's distance of an edge between equal points is NaN. */
+    if (a != b && !ccdVec3Eq(&model[a].v.v, &model[b].v.v))
+        add_edge(a, b);
+}
+
 int main(int argc, char **argv)
 {
+    /* as often as listed */
+    static void (*const steps[])(void) = {
+        add_vertex, add_vertex, add_vertex, add_vertex, add_vertex, add_any_edge, add_any_edge, add_face, add_face, add_face,
+        add_face, add_face, delete_any, delete_any, delete_any, search, search, set_nearest, recompute, reject_null};
     const int polytopes = atoi(argc > 1 ? argv[1] : "200");
     ours = running_ccd() != NULL;
     for (int round = 0; round < polytopes; round++) {
         count = 0;
         memset(&pt, 0xa5, sizeof pt);
         ccdPtInit(&pt);
-        forget();
+        reset_nearest();
         check_polytope();
         CHECK(ccdPtNearest(&pt) == NULL, "nothing is nearest in an empty polytope");
-        for (int step = 0; step < 150 && count < MOST - 8; step++) {
-            int what = random_below(20), a, b;
-            if (what < 5) {
-                add_vertex();
-            } else if (what < 7) {
-                a = pick(PT_VERTEX);
-                b = pick(PT_VERTEX);
-                /* libccd's distance of an edge between equal points is NaN. */
-                if (a != b && !ccdVec3Eq(&model[a].v.v, &model[b].v.v))
-                    add_edge(a, b);
-            } else if (what < 12) {
-                add_face();
-            } else if (what < 15) {
-                delete_any();
-            } else if (what < 17) {
-                search();
-            } else if (what < 18) {
-                set_nearest();
-            } else if (what < 19) {
-                recompute();
-            } else {
-                refuse();
-            }
+        for (int step = 0; step < 150 && count < MAX_ELEMENTS - 8; step++) {
+            steps[random_below(sizeof steps / sizeof *steps)]();
             check_polytope();
         }
         dump();

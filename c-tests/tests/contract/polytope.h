@@ -1,10 +1,9 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* libccd's polytope as its users know it: no installed header declares it, FCL brings
- * declarations of its own, and so do these tests. The functions that delete are inline
- * there too, compiled into the user: they unlink what the library linked and free() what
- * it allocated. */
+/* Declares libccd's polytope, which no installed header does: FCL has its own declarations too. The
+ * functions that delete elements are inline and part of the user's program: they unlink and free()
+ * elements that the library linked and allocated. */
 
 #ifndef TESTS_POLYTOPE_H
 #define TESTS_POLYTOPE_H
@@ -42,8 +41,6 @@ void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, con
 #ifdef __cplusplus
 }
 #endif
-
-#define PT_FOR_EACH(link, head) for ((link) = (head)->next; (link) != (head); (link) = (link)->next)
 
 static inline void list_unlink(list_t *node)
 {
@@ -87,9 +84,8 @@ static inline int pt_vertex_is_free(const pt_vertex_t *vertex) { return vertex->
 
 static inline int list_length(const list_t *head)
 {
-    const list_t *link;
     int n = 0;
-    PT_FOR_EACH(link, head)
+    for (const list_t *link = head->next; link != head; link = link->next)
         n++;
     return n;
 }

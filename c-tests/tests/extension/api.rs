@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The Rust interface: the same bits as the C calls, and every call with arguments that no query
-//! can work with. And every exported function called as C calls it, but from Rust: what Miri can
-//! run, to find undefined behaviour behind the pointers (`sh c-tests/tools/check.sh miri`). What the
-//! answers are worth is judged elsewhere, in C.
+//! The Rust interface: the same bits as the C calls, and errors for invalid arguments. And every
+//! exported function called from Rust as C calls it, so that Miri can find undefined behaviour behind
+//! the pointers (`sh c-tests/tools/check.sh miri`). The C tests check the results themselves.
 
-// Calls into the C interface.
-#![allow(unsafe_code)]
+#![allow(unsafe_code, reason = "calls of the C interface")]
 
 use ccd::internals::ffi::*;
 use ccd::{Contact, DistanceOptions, Error, Penetration, Real, Settings, Shape, Want, Warm};
@@ -16,7 +14,7 @@ use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::{null, null_mut};
 
-/// A box with a ball around it, turned about the axis z.
+/// Box with a ball around it, turned about the z axis.
 #[derive(Clone, Copy)]
 struct Rounded {
     at: [Real; 3],
@@ -61,12 +59,12 @@ impl Random {
 }
 
 unsafe extern "C-unwind" fn support(obj: *const c_void, dir: *const ccd_vec3_t, out: *mut ccd_vec3_t) {
-    // SAFETY: a Rounded, a direction, room for a point.
+    // SAFETY: `obj` is a Rounded, `dir` a direction, `out` memory for a point.
     unsafe { (*out).v = (*obj.cast::<Rounded>()).support((*dir).v) };
 }
 
 unsafe extern "C-unwind" fn center(obj: *const c_void, out: *mut ccd_vec3_t) {
-    // SAFETY: a Rounded, room for a point.
+    // SAFETY: `obj` is a Rounded, `out` memory for a point.
     unsafe { (*out).v = (*obj.cast::<Rounded>()).at };
 }
 
@@ -86,16 +84,15 @@ fn in_c(settings: &Settings, centred: bool) -> ccd_t {
 }
 
 const DIR: [Real; 3] = [1.0, 2.0, -2.0];
-const WAY: ccd_vec3_t = ccd_vec3_t { v: DIR };
+const C_DIR: ccd_vec3_t = ccd_vec3_t { v: DIR };
 type Object = *const c_void;
-/// Of whatever type a shape is, so that the library is compiled for one.
+/// Shape of any type, for which the library is compiled once.
 type Body<'a> = &'a dyn Shape;
-type Answer = Result<Option<Penetration>, Error>;
 
-/// A penetration query in Rust, along DIR or in its plane where it asks for one, and in C.
+/// Penetration query in Rust and in C, along DIR or in the plane across it where it takes a direction.
 struct Call {
     name: &'static str,
-    rust: fn(Body, Body, [Real; 3], &Settings, Option<&mut Warm>) -> Answer,
+    rust: fn(Body, Body, [Real; 3], &Settings, Option<&mut Warm>) -> Result<Option<Penetration>, Error>,
     c: fn(Object, Object, *const ccd_t, *mut ccd_warm_t, c_uint, *mut ccd_penetration_t) -> c_int,
 }
 
@@ -107,7 +104,7 @@ macro_rules! call {
                 $(let $dir = _dir;)?
                 ccd::$rust(a, b, $($dir,)? settings, warm)
             },
-            // SAFETY: live objects of their types, and room for an answer.
+            // SAFETY: live objects of their types, and memory for a result.
             c: |a, b, ccd, warm, want, out| unsafe { $c(a, b, ccd, $($vector,)? warm, want, out) },
         }
     };
@@ -117,8 +114,8 @@ const CALLS: [Call; 6] = [
     call!(penetration, ccdPenetration),
     call!(penetration_local, ccdPenetrationLocal),
     call!(penetration_proven, ccdPenetrationProven),
-    call!(penetration_along, ccdPenetrationAlong, dir, &WAY),
-    call!(penetration_planar, ccdPenetrationPlanar, dir, &WAY),
+    call!(penetration_along, ccdPenetrationAlong, dir, &C_DIR),
+    call!(penetration_planar, ccdPenetrationPlanar, dir, &C_DIR),
     call!(penetration_incremental, ccdPenetrationIncremental),
 ];
 
@@ -126,8 +123,8 @@ fn object(of: &Rounded) -> Object {
     (&raw const *of).cast()
 }
 
-/// Answer of the call in C.
-fn in_c_of(
+/// Returns code and result of the call in C.
+fn call_in_c(
     call: &Call,
     a: &Rounded,
     b: &Rounded,
@@ -141,8 +138,8 @@ fn in_c_of(
     (code, unsafe { out.assume_init() })
 }
 
-fn same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetration_t)) {
-    let Some(hit) = rust.expect("good input") else {
+fn assert_same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetration_t)) {
+    let Some(hit) = rust.expect("valid input") else {
         return assert_eq!(code, CCD_MISS);
     };
     assert_eq!(code, if hit.limit { CCD_LIMIT } else { CCD_HIT });
@@ -153,9 +150,10 @@ fn same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetra
     assert_eq!(hit.iterations as c_ulong, c.iterations);
 }
 
-/// Every call, cold and with a state that all share, whatever is wanted, with and without centres.
+/// Compares every call with C, cold and with a state that all share, with every set of requested results,
+/// with and without centers.
 #[test]
-fn same_bits_as_c() {
+fn results_are_bitwise_those_of_c() {
     let mut r = Random(1);
     let (mut hits, mut misses) = (0, 0);
     for round in 0..if cfg!(miri) { 1 } else { 200 } {
@@ -168,36 +166,36 @@ fn same_bits_as_c() {
         let c = in_c(&settings, centred);
         let mut warm = Warm::guess(DIR);
         let mut state = MaybeUninit::<ccd_warm_t>::zeroed();
-        // SAFETY: a state, of which every byte was given.
+        // SAFETY: memory of a state, every byte of which is set.
         let state = unsafe {
-            ccdWarmGuess(state.as_mut_ptr(), &WAY);
+            ccdWarmGuess(state.as_mut_ptr(), &C_DIR);
             state.assume_init_mut()
         };
         for frame in 0..3 {
             b.at[frame % 3] += 0.02;
             for call in &CALLS {
-                let cold = in_c_of(call, &a, &b, &c, null_mut(), bits);
+                let cold = call_in_c(call, &a, &b, &c, null_mut(), bits);
                 match cold.0 {
                     CCD_MISS => misses += 1,
                     _ => hits += 1,
                 }
-                same((call.rust)(&a, &b, DIR, &settings, None), cold);
-                let kept = in_c_of(call, &a, &b, &c, state, bits);
-                same((call.rust)(&a, &b, DIR, &settings, Some(&mut warm)), kept);
+                assert_same((call.rust)(&a, &b, DIR, &settings, None), cold);
+                let from_state = call_in_c(call, &a, &b, &c, state, bits);
+                assert_same((call.rust)(&a, &b, DIR, &settings, Some(&mut warm)), from_state);
             }
-            yes_or_no_and_distance(&a, &b, &settings, &mut warm, &c, state, bits);
+            compare_intersect_and_distance(&a, &b, &settings, &mut warm, &c, state, bits);
             warm.flip();
-            // SAFETY: a state.
+            // SAFETY: `state` is a state.
             unsafe { ccdWarmFlip(state) };
             (a, b) = (b, a);
         }
-        contacts_as_in_c(&a, &b, &c);
+        compare_contacts(&a, &b, &c);
     }
     let many = hits > 500 && misses > 500;
     assert!(many || cfg!(miri), "{hits} hits, {misses} misses");
 }
 
-fn yes_or_no_and_distance(
+fn compare_intersect_and_distance(
     a: &Rounded,
     b: &Rounded,
     settings: &Settings,
@@ -217,38 +215,34 @@ fn yes_or_no_and_distance(
     };
     let (a, b): (Body, Body) = (a, b);
     assert_eq!(ccd::intersect(a, b, Some(warm)), Ok(yes));
-    let d = ccd::signed_distance(a, b, settings, &options, Some(warm)).expect("good input");
+    let d = ccd::signed_distance(a, b, settings, &options, Some(warm)).expect("valid input");
     assert_eq!(d.limit, code == CCD_LIMIT);
     assert_eq!((d.distance, d.distance_upper), (out.distance, out.distance_upper));
     assert_eq!([d.normal, d.point1, d.point2], [out.normal.v, out.point1.v, out.point2.v]);
     assert_eq!(d.support_points as c_ulong, out.support_points);
 }
 
-fn contacts_as_in_c(a: &Rounded, b: &Rounded, c: &ccd_t) {
+fn compare_contacts(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
     let mut memory = ccd::ManifoldCache::default();
-    let bodies: [Body; 2] = [a, b];
-    let found = ccd::contacts(bodies[0], bodies[1], DIR, 0.01, Some(&mut memory), &mut room).expect("good input");
+    let found = ccd::contacts(a as Body, b as Body, DIR, 0.01, Some(&mut memory), &mut room).expect("valid input");
     let (a, b) = (object(a), object(b));
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
     let mut manifold = MaybeUninit::<ccd_manifold_cache_t>::zeroed();
-    // SAFETY: live objects of their types, room for four.
-    let count = unsafe {
-        let (memory, room) = (manifold.as_mut_ptr(), out.as_mut_ptr().cast());
-        ccdContacts(a, b, c, &WAY, 0.01, memory, room, 4)
-    };
+    // SAFETY: live objects of their types, memory for four contacts.
+    let count = unsafe { ccdContacts(a, b, c, &C_DIR, 0.01, manifold.as_mut_ptr(), out.as_mut_ptr().cast(), 4) };
     assert_eq!(found.len(), count as usize);
     for (contact, out) in found.iter().zip(out) {
-        // SAFETY: among those that were written.
+        // SAFETY: one of the `count` contacts that were written.
         let out = unsafe { out.assume_init() };
         assert_eq!([contact.point1, contact.point2], [out.point1.v, out.point2.v]);
         assert_eq!((contact.depth, contact.id), (out.depth, out.id));
     }
 }
 
-/// A question to every call.
+/// Arguments of every call.
 #[derive(Clone, Copy)]
-struct Question {
+struct Arguments {
     a: Rounded,
     b: Rounded,
     dir: [Real; 3],
@@ -257,37 +251,33 @@ struct Question {
     slop: Real,
 }
 
-/// About a pair that overlaps.
-fn good() -> Question {
-    let mut r = Random(7);
-    let (mut a, mut b) = (r.shape(0.0, true), r.shape(0.0, true));
-    (a.half, b.half) = ([1.0; 3], [0.5; 3]);
-    b.at = [1.3, 0.1, 0.2];
-    Question { a, b, dir: DIR, settings: Settings::default(), options: DistanceOptions::default(), slop: 0.01 }
+/// Returns valid arguments for a pair that overlaps.
+fn valid() -> Arguments {
+    let (half, options) = ([1.0; 3], DistanceOptions::default());
+    let (a, b) = (rounded(half, 0.1, [0.0; 3]), rounded([0.5; 3], 0.0, [1.3, 0.1, 0.2]));
+    Arguments { a, b, dir: DIR, settings: Settings::default(), options, slop: 0.01 }
 }
 
-impl Question {
+impl Arguments {
     fn bodies(&self) -> [Body<'_>; 2] {
         [&self.a, &self.b]
     }
 
-    /// Asks every call, from the state that an overlap left: those whose names hold one of these
-    /// words refuse, and write nothing.
-    fn refused_by(&self, words: &[&str], what: &str) {
-        let (q, of) = (self, good());
+    /// Checks that the calls whose names contain one of these words, and only those, reject the
+    /// arguments and leave the state and the outputs unchanged.
+    fn assert_rejected_by(&self, words: &[&str], what: &str) {
+        let (q, of) = (self, valid());
         let ([a, b], [of_a, of_b]) = (q.bodies(), of.bodies());
         let mut before = Warm::default();
         let hit = ccd::penetration(of_a, of_b, &of.settings, Some(&mut before));
-        assert!(hit.expect("good input").is_some());
-        let check = |name: &str, ask: &mut dyn FnMut(&mut Warm) -> Result<(), Error>| {
+        assert!(hit.expect("valid input").is_some());
+        let is_rejected_by = |name: &str| words.iter().any(|word| name.contains(word));
+        let check = |name: &str, call: &mut dyn FnMut(&mut Warm) -> Result<(), Error>| {
             let mut warm = before;
-            let refuses = ask(&mut warm).err();
-            let expected = words.iter().any(|word| name.contains(word));
-            assert_eq!(refuses.is_some(), expected, "{name}: {what}");
-            if let Some(said) = refuses {
-                assert!(matches!(said, Error::BadInput(_)), "{name}, {what}: {said}");
-                assert_eq!(format!("{warm:?}"), format!("{before:?}"), "{name}, {what}");
-            }
+            let error = call(&mut warm).err();
+            assert_eq!(error.is_some(), is_rejected_by(name), "{name}: {what}");
+            assert!(matches!(error, None | Some(Error::BadInput(_))), "{name}, {what}: {error:?}");
+            assert!(error.is_none() || format!("{warm:?}") == format!("{before:?}"), "{name}, {what}");
         };
         for call in &CALLS {
             check(call.name, &mut |warm| (call.rust)(a, b, q.dir, &q.settings, Some(warm)).map(drop));
@@ -296,104 +286,82 @@ impl Question {
         check("distance", &mut |warm| ccd::signed_distance(a, b, &q.settings, &q.options, Some(warm)).map(drop));
         let mut room = [Contact::default(); 2];
         check("contacts", &mut |_| ccd::contacts(a, b, q.dir, q.slop, None, &mut room).map(drop));
-        let written = room != [Contact::default(); 2];
-        assert_eq!(written, !words.iter().any(|word| "contacts".contains(word)));
+        assert_eq!(room == [Contact::default(); 2], is_rejected_by("contacts"));
     }
 }
 
 #[test]
-fn what_no_query_can_work_with_is_refused() {
-    const ASKED_WITHIN: [&str; 2] = ["penetration", "distance"];
+fn invalid_arguments_are_rejected() {
     let (infinite, nan) = (Real::INFINITY, Real::NAN);
     for length in [-1e-9, nan, Real::NEG_INFINITY, 0.0, infinite] {
-        let (mut tolerance, mut slop) = (good(), good());
-        tolerance.settings.tolerance = length;
-        slop.slop = length;
-        // Zero asks for the best there is, infinity for any answer.
-        let none = length.is_nan() || length < 0.0;
-        tolerance.refused_by(&ASKED_WITHIN[..2 * usize::from(none)], "tolerance");
-        slop.refused_by(&["contacts"][..usize::from(none)], "slop");
+        // A length may be zero or infinite; a margin is finite.
+        let is_invalid = length.is_nan() || length < 0.0;
+        let if_invalid = |names: &'static [&str]| if is_invalid { names } else { &[] };
+        let mut q = valid();
+        q.settings.tolerance = length;
+        q.assert_rejected_by(if_invalid(&["penetration", "distance"]), "tolerance");
+        Arguments { slop: length, ..valid() }.assert_rejected_by(if_invalid(&["contacts"]), "slop");
         for field in 0..3 {
-            let mut q = good();
+            let mut q = valid();
             let DistanceOptions { margin1, margin2, max_distance } = &mut q.options;
             *[margin1, margin2, max_distance][field] = length;
-            // No object has an infinite margin.
-            let refused = none || field < 2 && length == infinite;
-            q.refused_by(&["distance"][..usize::from(refused)], "option of the distance");
+            let is_rejected = is_invalid || field < 2 && length == infinite;
+            q.assert_rejected_by(&["distance"][..usize::from(is_rejected)], "option of the distance");
         }
     }
     for dir in [[0.0; 3], [0.0, nan, 1.0], [infinite, 0.0, 0.0]] {
-        Question { dir, ..good() }.refused_by(&["along", "planar", "contacts"], "direction");
-        // A guess of nothing is cold.
-        let (guess, cold) = (Warm::guess(dir), Warm::default());
-        assert_eq!(format!("{guess:?}"), format!("{cold:?}"));
+        Arguments { dir, ..valid() }.assert_rejected_by(&["along", "planar", "contacts"], "direction");
+        assert_eq!(format!("{:?}", Warm::guess(dir)), format!("{:?}", Warm::default()), "an invalid guess is cold");
     }
     for bad in [nan, infinite, -infinite] {
-        for (point, centre) in [(true, false), (false, true), (true, true)] {
-            let mut q = good();
+        for (point, center) in [(true, false), (false, true), (true, true)] {
+            let mut q = valid();
             q.b.radius = if point { bad } else { 0.0 };
-            q.b.at[1] = if centre { bad } else { 0.0 };
-            q.refused_by(&[""], "shape");
+            q.b.at[1] = if center { bad } else { 0.0 };
+            q.assert_rejected_by(&[""], "shape");
         }
     }
-    let q = good();
+    let q = valid();
     let [a, b] = q.bodies();
     assert!(ccd::contacts(a, b, DIR, 0.0, None, &mut []).is_err());
 }
 
-/// Errors go through `?`, and say what is wrong.
+/// Checks that errors convert to `Box<dyn Error>` and name the invalid argument.
 #[test]
-fn errors_are_errors() {
-    fn fails() -> Result<(), Box<dyn std::error::Error>> {
-        let q = good();
-        let [a, b] = q.bodies();
-        ccd::penetration(a, b, &Settings::new(Real::NAN), None)?;
-        Ok(())
-    }
-    let said = fails().expect_err("a NaN").to_string();
-    assert_eq!(said, "the tolerance is negative or NaN");
+fn errors_name_the_argument() {
+    let q = valid();
+    let [a, b] = q.bodies();
+    let result = ccd::penetration(a, b, &Settings::new(Real::NAN), None);
+    let error: Box<dyn std::error::Error> = result.expect_err("a NaN").into();
+    assert_eq!(error.to_string(), "the tolerance is negative or NaN");
 }
 
-/// A shape that panics: the query is left, the state is as it was.
+/// Checks that a panic of a shape leaves the query, and the state unchanged.
 #[test]
-fn a_panic_leaves_the_state() {
-    let (Question { a, settings, .. }, before) = (good(), Warm::guess(DIR));
-    for left in 0..40 {
-        let asked = std::cell::Cell::new(0);
-        let tired = |d: [Real; 3]| {
-            asked.set(asked.get() + 1);
-            assert!(asked.get() <= left, "tired");
+fn panics_of_a_shape_leave_the_state_unchanged() {
+    let (Arguments { a, settings, .. }, before) = (valid(), Warm::guess(DIR));
+    for limit in 0..40 {
+        let count = std::cell::Cell::new(0);
+        let panicking = |d: [Real; 3]| {
+            count.set(count.get() + 1);
+            assert!(count.get() <= limit, "the limit");
             d.map(|x| 0.1 * x)
         };
         let mut warm = before;
-        let bodies: [Body; 2] = [&a, &tired];
-        let ask = || ccd::penetration_proven(bodies[0], bodies[1], &settings, Some(&mut warm)).map(|_| ());
-        let left = catch_unwind(AssertUnwindSafe(ask));
-        let kept = format!("{warm:?}") == format!("{before:?}");
-        assert_eq!(left.is_err(), kept, "after {} answers", asked.get());
+        let bodies: [Body; 2] = [&a, &panicking];
+        let query = || ccd::penetration_proven(bodies[0], bodies[1], &settings, Some(&mut warm)).map(drop);
+        let result = catch_unwind(AssertUnwindSafe(query));
+        let is_unchanged = format!("{warm:?}") == format!("{before:?}");
+        assert_eq!(result.is_err(), is_unchanged, "after {} calls", count.get());
     }
-}
-
-/// Shapes of different kinds in one list.
-#[test]
-fn shapes_behind_a_pointer() {
-    let Question { a, b, .. } = good();
-    let point = |_: [Real; 3]| [1.2, 0.1, 0.2];
-    let all: [Box<dyn Shape>; 3] = [Box::new(a), Box::new(b), Box::new(point)];
-    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-        assert_eq!(ccd::intersect(&*all[i], &*all[j], None), Ok(true));
-        let hit = ccd::penetration(&*all[i], &*all[j], &Settings::default(), None);
-        assert!(hit.expect("good input").is_some());
-    }
-    assert!(ccd::implementation().starts_with("warmccd "));
 }
 
 // --- every exported function, as C calls it ---------------------------------------------------
 
-/// Arguments of a call, and its answer.
+/// Call in C, without its own arguments and outputs.
 type InC = fn(Object, Object, *const ccd_t, *mut ccd_warm_t) -> c_int;
 
-/// A call that writes depth, direction and position.
+/// Defines a call that writes depth, direction and position.
 macro_rules! depth {
     ($call:ident $(, $warm:ident)?) => {
         |a, b, ccd, _warm| unsafe {
@@ -408,7 +376,7 @@ const YES: [c_int; 3] = [1, 0, 0];
 const LIBCCD: [c_int; 3] = [0, -1, -1];
 const FULL: [c_int; 3] = [CCD_HIT, CCD_MISS, CCD_BAD_INPUT];
 
-/// Those that CALLS has not; what each returns of an overlap, of a miss and of points that are no numbers.
+/// The other calls, with their codes for an overlap, a miss and points that are NaN.
 #[rustfmt::skip]
 const IN_C: [(&str, [c_int; 3], InC); 9] = [
     ("MPR", LIBCCD, depth!(ccdMPRPenetration)),
@@ -425,37 +393,37 @@ const IN_C: [(&str, [c_int; 3], InC); 9] = [
     ("intersect", YES, |a, b, ccd, warm| unsafe { ccdIntersect(a, b, ccd, warm) }),
 ];
 
-/// A box, or a ball, or both.
+/// Returns a box with a ball around it, parallel to the axes.
 fn rounded(half: [Real; 3], radius: Real, at: [Real; 3]) -> Rounded {
     let (turn, centred) = ([1.0, 0.0], true);
     Rounded { at, half, radius, turn, centred }
 }
 
-/// Every state that C can hand over: cold, a guess, any bytes at all.
+/// Returns states as C may pass them: cold, a guess, any bytes.
 fn states() -> Vec<ccd_warm_t> {
     let bytes = |next: &mut dyn FnMut() -> u8| {
         let mut state = MaybeUninit::<ccd_warm_t>::uninit();
         let first = state.as_mut_ptr().cast::<u8>();
         for i in 0..size_of::<ccd_warm_t>() {
-            // SAFETY: a byte of it.
+            // SAFETY: a byte of the state.
             unsafe { first.add(i).write(next()) };
         }
-        // SAFETY: every byte was written, and any will do.
+        // SAFETY: every byte is set, and every value is valid.
         unsafe { state.assume_init() }
     };
     let mut random = Random(1);
     let mut states = vec![bytes(&mut || 0), bytes(&mut || 0), bytes(&mut || 0xff)];
-    // SAFETY: a state.
-    unsafe { ccdWarmGuess(&mut states[0], &WAY) };
+    // SAFETY: `states[0]` is a state.
+    unsafe { ccdWarmGuess(&mut states[0], &C_DIR) };
     let random_states = if cfg!(miri) { 1 } else { 8 };
     let mut byte = || (128.0 + random.within(128.0)) as u8;
     states.extend((0..random_states).map(|_| bytes(&mut byte)));
     states
 }
 
-/// Whatever the state holds, hits are hits and misses misses; a point that is no number is refused.
+/// Checks the codes of an overlap, a miss and a NaN point from every state.
 #[test]
-fn every_call_answers_in_c_from_every_state() {
+fn c_calls_from_every_state() {
     let (ball, brick) = (rounded([0.0; 3], 1.0, [0.0; 3]), [0.5, 1.0, 1.5]);
     let ccd = ccd_t { first_dir: Some(ccdFirstDirDefault), ..in_c(&Settings::default(), true) };
     for (a, b, expected) in [
@@ -465,14 +433,14 @@ fn every_call_answers_in_c_from_every_state() {
         (ball, rounded([0.0; 3], Real::NAN, [0.5; 3]), 2),
     ] {
         for (number, mut state) in states().into_iter().enumerate() {
-            // The second call starts from what the first one left.
+            // The second round starts from the states of the first.
             for _ in 0..2 {
-                for (name, codes, ask) in &IN_C {
-                    let code = ask(object(&a), object(&b), &ccd, &mut state);
+                for (name, codes, call) in &IN_C {
+                    let code = call(object(&a), object(&b), &ccd, &mut state);
                     assert_eq!(code, codes[expected], "{name}, state {number}");
                 }
                 for call in &CALLS {
-                    let code = in_c_of(call, &a, &b, &ccd, &mut state, CCD_WANT_ALL).0;
+                    let code = call_in_c(call, &a, &b, &ccd, &mut state, CCD_WANT_ALL).0;
                     assert_eq!(code, FULL[expected], "{}, state {number}", call.name);
                 }
             }
@@ -480,21 +448,20 @@ fn every_call_answers_in_c_from_every_state() {
     }
 }
 
-/// A ball in the middle of one that is a hundredth too long: minima on a circle, and nearly
-/// everywhere. The proof outgrows the stack.
+/// Queries a ball in the middle of one that is 1 % longer, with minima on a circle and nearly everywhere:
+/// the proof allocates.
 #[test]
-fn memory_from_malloc() {
+fn c_call_that_allocates() {
     let a = rounded([0.0, 0.0, 0.01], 1.0, [0.0; 3]);
     let b = rounded([0.0; 3], 0.5, [0.0; 3]);
     let ccd = in_c(&Settings::default(), true);
-    let (code, out) = in_c_of(&CALLS[2], &a, &b, &ccd, null_mut(), CCD_WANT_ALL);
+    let (code, out) = call_in_c(&CALLS[2], &a, &b, &ccd, null_mut(), CCD_WANT_ALL);
     assert_eq!(code, CCD_LIMIT);
     assert!((out.depth - 1.5).abs() < 1e-4 && out.support_points > 162);
 }
 
-/// What asks one object or none.
 #[test]
-fn what_asks_no_pair() {
+fn c_calls_without_a_pair() {
     let ball = rounded([0.0; 3], 1.0, [0.5; 3]);
     let mut found = MaybeUninit::<ccd_check_t>::uninit();
     let mut dir = ccd_vec3_t::default();
@@ -502,8 +469,8 @@ fn what_asks_no_pair() {
     let (p, a) = (point(0.25, 0.25, 2.0), point(0.0, 0.0, 0.0));
     let (b, c, mut witness) = (point(1.0, 0.0, 0.0), point(0.0, 1.0, 0.0), a);
     let at = &raw mut witness;
-    // SAFETY: a live object of its type, and room for what is found; a string that stays; points, and
-    // the witness may be one of the inputs.
+    // SAFETY: a live object of its type, and memory for the result; a static string; points, and the
+    // witness point may be one of the inputs.
     unsafe {
         let faults = ccdCheck(object(&ball), Some(support), Some(center), found.as_mut_ptr());
         assert!(faults == 0 && (found.assume_init().size - 2.0).abs() < 0.1);
@@ -511,6 +478,7 @@ fn what_asks_no_pair() {
         assert_eq!(dir.v, [1.0, 0.0, 0.0]);
         let name = CStr::from_ptr(ccdImplementation());
         assert!(name.to_bytes().starts_with(b"warmccd "));
+        assert_eq!(name.to_bytes(), ccd::implementation().as_bytes());
         assert_eq!(ccdVec3PointTriDist2(&p, at, &b, &c, at), 4.0);
         assert_eq!(*at, point(0.25, 0.25, 0.0));
         at.write(a);
@@ -518,10 +486,9 @@ fn what_asks_no_pair() {
     }
 }
 
-/// `__ccdSupport` with its direction in its output; a tetrahedron around the origin, taken apart by
-/// ccdPtDestroy.
+/// Calls `__ccdSupport` with its direction in its output, and builds a tetrahedron around the origin.
 #[test]
-fn polytope_in_c() {
+fn polytope_functions_in_c() {
     let a = rounded([0.0; 3], 1.0, [0.0; 3]);
     let b = Rounded { at: [3.0, 0.0, 0.0], ..a };
     let (mut out, ccd) = (ccd_support_t::default(), in_c(&Settings::default(), true));
@@ -529,7 +496,7 @@ fn polytope_in_c() {
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
     let mut pt = MaybeUninit::<ccd_pt_t>::uninit();
     let pt = pt.as_mut_ptr();
-    // SAFETY: live objects; a polytope of its own elements, which NULL is none of.
+    // SAFETY: live objects; a polytope, its own elements, and NULL, which is rejected.
     unsafe {
         __ccdSupport(object(&a), object(&b), &raw const out.v, &ccd, &raw mut out);
         assert_eq!(out.v.v, [-3.0, 2.0, 0.0]);

@@ -1,25 +1,25 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* ccdContacts against exact regions: boxes and hulls at rest and tilted, edges, corners;
- * round objects by formula; flat ones; how many support points it takes; that the region
- * moves as the objects do.
+/* Compares ccdContacts with exact contact regions: boxes and hulls at rest and tilted, edges, corners;
+ * round and flat objects by formula. Checks the number of support calls, and that the region moves with
+ * the objects.
  *
- *   contacts [N]   one scene in N, for a tool that looks at memory */
+ *   contacts [N]   one scene in N, for a tool that checks memory */
 
 #include "tests/stability/categories.h"
 
 #include "tests/contract/check.h"
 #include "manifold.h"
 
-enum { ROOM = 32 };
+enum { MAX_CONTACTS = 32 };
 
-static int share = 1; /* one scene in so many is made */
+static int share = 1; /* one scene in so many */
 
 static const int single = sizeof(ccd_real_t) == sizeof(float);
 static const double pi = 3.14159265358979323846;
 
-static ccd_manifold_cache_t *memory_in_use; /* NULL: none */
+static ccd_manifold_cache_t *cache; /* NULL: none */
 
 typedef struct {
     shape_t a, b;
@@ -28,32 +28,32 @@ typedef struct {
 
 typedef struct {
     int n;
-    ccd_contact_t c[ROOM];
+    ccd_contact_t c[MAX_CONTACTS];
 } contacts_t;
 
-static double along(const double a[3], const ccd_vec3_t *b)
+static double dot(const double a[3], const ccd_vec3_t *b)
 {
     return a[0] * (double)b->v[0] + a[1] * (double)b->v[1] + a[2] * (double)b->v[2];
 }
 
-/* What rounding does to a coordinate. */
-static double noise_of(const scene_t *s) { return 4 * real_eps() * largest_coordinate(&s->a, &s->b); }
+/* Returns the rounding of a coordinate. */
+static double rounding(const scene_t *s) { return 4 * real_eps() * largest_coordinate(&s->a, &s->b); }
 
-/* The height along n of a shape's support plane in the direction sign * n. */
-static double reach(const shape_t *shape, const double n[3], int sign)
+/* Returns the height along n of a shape's support plane in the direction sign * n. */
+static double support_height(const shape_t *shape, const double n[3], int sign)
 {
     ccd_vec3_t d, p;
     for (int k = 0; k < 3; k++)
         d.v[k] = (ccd_real_t)(sign * n[k]);
     shape_support(shape, &d, &p);
-    return along(n, &p);
+    return dot(n, &p);
 }
 
-/* The slop in force: the scene's, or the least one. */
-static double slop_in_force(const scene_t *s)
+/* Returns the scene's slop, or the library's least one. */
+static double effective_slop(const scene_t *s)
 {
-    const double depth = reach(&s->a, s->n, 1) - reach(&s->b, s->n, -1);
-    return fmax(s->slop, fmax(0.01 * depth, 8 * noise_of(s)));
+    const double depth = support_height(&s->a, s->n, 1) - support_height(&s->b, s->n, -1);
+    return fmax(s->slop, fmax(0.01 * depth, 8 * rounding(s)));
 }
 
 static contacts_t contacts_at_most(scene_t *s, int max)
@@ -67,39 +67,38 @@ static contacts_t contacts_at_most(scene_t *s, int max)
         normal.v[k] = (ccd_real_t)(3 * s->n[k]);
     s->a.calls = s->b.calls = 0;
     memset(&out, 0, sizeof out);
-    out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, memory_in_use, out.c, max);
+    out.n = OURS(ccdContacts)(&s->a, &s->b, &ccd, &normal, (ccd_real_t)s->slop, cache, out.c, max);
     CHECK(out.n >= 1 && out.n <= max, "%d contacts", out.n);
     for (int k = 0; k < 2; k++) {
         const shape_t *shape = k ? &s->b : &s->a;
-        CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12UL : 24UL) + (memory_in_use ? 10 : 0), "%lu calls of type %d", shape->calls, shape->type);
+        CHECK(shape->calls <= (shape->type == SHAPE_BOX ? 12UL : 24UL) + (cache ? 10 : 0), "%lu calls of type %d", shape->calls, shape->type);
     }
     return out;
 }
 
-static int asked_twice;
+static int runs_twice; /* with a cache: the second result counts */
 
-/* With a memory: what is asked again is judged. */
 static contacts_t contacts_of(scene_t *s)
 {
-    const contacts_t c = contacts_at_most(s, ROOM);
-    return asked_twice ? contacts_at_most(s, ROOM) : c;
+    const contacts_t c = contacts_at_most(s, MAX_CONTACTS);
+    return runs_twice ? contacts_at_most(s, MAX_CONTACTS) : c;
 }
 
-static flats_t flats_of(const contacts_t *c, const frame_t *f)
+static polygon_t polygon_of(const contacts_t *c, const frame_t *f)
 {
-    flats_t flats;
-    flats.n = 0;
+    polygon_t polygon;
+    polygon.n = 0;
     for (int i = 0; i < c->n; i++) {
         truth_real p[3];
         for (int k = 0; k < 3; k++)
             p[k] = c->c[i].point1.v[k];
-        flats.p[flats.n++] = manifold_flat(f, p);
+        polygon.p[polygon.n++] = manifold_project(f, p);
     }
-    return flats;
+    return polygon;
 }
 
-/* How far the point is from the other one's place across n. */
-static double across(const scene_t *s, const ccd_contact_t *p)
+/* Returns the distance of the two points across n. */
+static double lateral_distance(const scene_t *s, const ccd_contact_t *p)
 {
     double most = 0;
     for (int k = 0; k < 3; k++)
@@ -107,16 +106,16 @@ static double across(const scene_t *s, const ccd_contact_t *p)
     return most;
 }
 
-/* How far a point is outside of a shape: the largest of many directions, the last ones about the best. */
-static double outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
+/* Returns the distance of a point outside of a shape: the largest of many directions, the last near the best. */
+static double distance_outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
 {
-    double best = -HUGE_VAL, way[3] = {0, 0, 0}, step = 1;
+    double best = -HUGE_VAL, best_dir[3] = {0, 0, 0}, step = 1;
     int k;
     for (int trial = 0; trial < trials; trial++) {
         ccd_vec3_t m, q;
         double v[3], l = 0, out = 0;
         for (k = 0; k < 3; k++) {
-            v[k] = uniform(-step, step) + (4 * trial < trials ? 0 : way[k]);
+            v[k] = uniform(-step, step) + (4 * trial < trials ? 0 : best_dir[k]);
             l += v[k] * v[k];
         }
         for (k = 0, l = sqrt(l); k < 3; k++)
@@ -126,22 +125,21 @@ static double outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
             out += v[k] * ((double)p->v[k] - (double)q.v[k]);
         if (out > best) {
             best = out;
-            memcpy(way, v, sizeof way);
+            memcpy(best_dir, v, sizeof best_dir);
         } else if (4 * trial >= trials)
             step = step < 1e-6 ? 0.1 : 0.97 * step;
     }
     return best;
 }
 
-/* What holds of every point, whatever the normal: the depth, and that its two points are within the slop
- * of the support planes. */
-static void judge_heights(const scene_t *s, const contacts_t *c, const char *what)
+/* Checks, for any normal, the depths, and that the points are within the slop of the support planes. */
+static void check_heights(const scene_t *s, const contacts_t *c, const char *what)
 {
-    const double noise = 4 * noise_of(s), room = slop_in_force(s) + 8 * noise;
-    const double h1 = reach(&s->a, s->n, 1), h2 = reach(&s->b, s->n, -1);
+    const double noise = 4 * rounding(s), room = effective_slop(s) + 8 * noise;
+    const double h1 = support_height(&s->a, s->n, 1), h2 = support_height(&s->b, s->n, -1);
     for (int i = 0; i < c->n; i++) {
         const ccd_contact_t *p = &c->c[i];
-        const double one = along(s->n, &p->point1), two = along(s->n, &p->point2), depth = (double)p->depth;
+        const double one = dot(s->n, &p->point1), two = dot(s->n, &p->point2), depth = (double)p->depth;
         CHECK(fabs(one - two - depth) <= noise, "%s: points along n", what);
         CHECK(depth <= h1 - h2 + noise && depth >= h1 - h2 - 2 * room, "%s: depth %g of %g", what, depth, h1 - h2);
         CHECK(i == 0 || p->depth <= c->c[0].depth + (ccd_real_t)noise, "%s: point %d is the deepest", what, i);
@@ -150,78 +148,78 @@ static void judge_heights(const scene_t *s, const contacts_t *c, const char *wha
     }
 }
 
-/* And with the normal of an answer: the two witnesses lie in their objects, one behind the other. A
- * single contact of faces that share nothing is a point of each, and only along n as far apart as the
- * depth. */
-static void judge_contacts(scene_t *s, const contacts_t *c, const char *what)
+/* Checks, for the normal of a penetration, that the two points are in their objects, and on a line along n
+ * except for a single contact of faces without a common point. */
+static void check_contacts(scene_t *s, const contacts_t *c, const char *what)
 {
-    const double noise = 4 * noise_of(s), slop = slop_in_force(s), room = slop + 8 * noise;
-    judge_heights(s, c, what);
+    const double noise = 4 * rounding(s), slop = effective_slop(s), room = slop + 8 * noise;
+    check_heights(s, c, what);
     for (int i = 0; i < c->n; i++) {
         const ccd_contact_t *p = &c->c[i];
         const uint64_t random = random_state;
-        double out = across(s, p);
+        double out = lateral_distance(s, p);
         CHECK(out <= noise || (c->n == 1 && out > slop / 2), "%s: points %g across", what, out);
-        out = fmax(outside(&s->a, &p->point1, 20), outside(&s->b, &p->point2, 20));
+        out = fmax(distance_outside(&s->a, &p->point1, 20), distance_outside(&s->b, &p->point2, 20));
         if (c->n == 1)
             random_state = random;
         CHECK(out <= room, "%s: a point %g outside, slop %g", what, out, s->slop);
     }
 }
 
-/* The region of two polytopes; 0 where the truth is not one. */
-static int thin; /* neither face is more than a segment */
+static int both_thin; /* neither face is more than a segment */
 
-static int region_of(const scene_t *s, const frame_t *f, flats_t *region, double *apart)
+/* Computes the region of two polytopes and, where it is empty, the distance of the faces. Returns 0 where it is
+ * ambiguous. */
+static int region_of(const scene_t *s, const frame_t *f, polygon_t *region, double *apart)
 {
-    flats_t one, two;
+    polygon_t one, two;
     double top1, top2;
-    int clear = manifold_face(&s->a, f, 1, slop_in_force(s), noise_of(s), &one, &top1) &
-                manifold_face(&s->b, f, -1, slop_in_force(s), noise_of(s), &two, &top2);
-    /* The library floors the slop by the rounding of the vertices that it has met, which may be less than that of all. */
+    int clear = manifold_face(&s->a, f, 1, effective_slop(s), rounding(s), &one, &top1) &
+                manifold_face(&s->b, f, -1, effective_slop(s), rounding(s), &two, &top2);
+    /* The library's least slop is that of the vertices which it has evaluated. */
     const double least = fmax(s->slop, 0.01 * (top1 - top2));
-    flats_t few;
+    polygon_t few;
     double top;
-    clear &= manifold_face(&s->a, f, 1, least, noise_of(s), &few, &top) && few.n == one.n;
-    clear &= manifold_face(&s->b, f, -1, least, noise_of(s), &few, &top) && few.n == two.n;
-    thin = 1;
+    clear &= manifold_face(&s->a, f, 1, least, rounding(s), &few, &top) && few.n == one.n;
+    clear &= manifold_face(&s->b, f, -1, least, rounding(s), &few, &top) && few.n == two.n;
+    both_thin = 1;
     region->n = 0;
     if (one.n < 3 && two.n < 3)
         return 0;
-    thin = 0;
-    *region = two.n < 3 ? flat_clip(&two, &one) : flat_clip(&one, &two);
+    both_thin = 0;
+    *region = two.n < 3 ? polygon_clip(&two, &one) : polygon_clip(&one, &two);
     *apart = 0;
     if (region->n == 0) {
         int i;
         for (i = 0, *apart = HUGE_VAL; i < one.n; i++)
-            *apart = fmin(*apart, (double)flat_distance(&two, one.p[i]));
+            *apart = fmin(*apart, polygon_distance(&two, one.p[i]));
         for (i = 0; i < two.n; i++)
-            *apart = fmin(*apart, (double)flat_distance(&one, two.p[i]));
+            *apart = fmin(*apart, polygon_distance(&one, two.p[i]));
     }
     return clear;
 }
 
-static unsigned long regions, segments, points, beside, doubtful;
+static unsigned long regions, segments, points, disjoint, ambiguous;
 
-/* The contacts of two polytopes against the truth. */
+/* Compares the contacts of two polytopes with the exact region. */
 static void compare(scene_t *s, const char *what)
 {
     const frame_t f = manifold_frame(s->n);
-    flats_t region, found;
-    double apart, room = 4 * slop_in_force(s) + 64 * noise_of(s);
+    polygon_t region, found;
+    double apart, room = 4 * effective_slop(s) + 64 * rounding(s);
     contacts_t c = contacts_of(s);
-    judge_contacts(s, &c, what);
+    check_contacts(s, &c, what);
     if (!region_of(s, &f, &region, &apart)) {
-        doubtful += !thin;
+        ambiguous += !both_thin;
         return;
     }
-    found = flats_of(&c, &f);
+    found = polygon_of(&c, &f);
     if (region.n == 0) {
         if (apart > room) {
-            beside++;
+            disjoint++;
             CHECK(c.n == 1, "%s: %d contacts of faces %g apart", what, c.n, apart);
-            CHECK(fabs(across(s, &c.c[0]) / apart - 0.8) <= 0.25, "%s: %g across, faces %g apart", what,
-                  across(s, &c.c[0]), apart);
+            CHECK(fabs(lateral_distance(s, &c.c[0]) / apart - 0.8) <= 0.25, "%s: %g across, faces %g apart", what,
+                  lateral_distance(s, &c.c[0]), apart);
         }
         return;
     }
@@ -231,19 +229,19 @@ static void compare(scene_t *s, const char *what)
         segments++;
     else
         points++;
-    CHECK((double)flat_apart(&region, &found) <= room, "%s: %g from the truth of %d corners, %d found, slop %g, calls %lu %lu", what,
-          (double)flat_apart(&region, &found), region.n, found.n, s->slop, s->a.calls, s->b.calls);
+    CHECK(polygon_difference(&region, &found) <= room, "%s: %g from the truth of %d corners, %d found, slop %g, calls %lu %lu", what,
+          polygon_difference(&region, &found), region.n, found.n, s->slop, s->a.calls, s->b.calls);
     if (region.n > 2) {
-        const double area = (double)flat_area(&region), here = (double)flat_area(&found);
+        const double area = polygon_area(&region), here = polygon_area(&found);
         CHECK(here >= 0 && fabs(area - here) <= 0.01 * area + room * room, "%s: area %g of %g", what, here, area);
     }
 }
 
-/* --- scenes: a stands below the plane z = 0, b on it, depth deep; then all is turned ------- */
+/* --- scenes: a is below the plane z = 0, b above it; then the scene is moved ---------------- */
 
 static ccd_real_t prism_verts[4][16 * 3];
 
-/* A frustum with a face of k corners at either end of z; its local z from -half to half. */
+/* Returns a frustum with k corners at both ends, z = -half and half. */
 static shape_t prism(int which, int k, double half)
 {
     ccd_real_t *v = prism_verts[which];
@@ -268,8 +266,8 @@ static shape_t block(int which, double *half)
     return prism(which, 3 + random_below(6), *half);
 }
 
-/* A block under the plane and one above it; returns half of that one's height. */
-static double blocks(scene_t *s)
+/* Makes a block under the plane and one at the origin; returns half of the height of that. */
+static double make_blocks(scene_t *s)
 {
     double half;
     s->a = block(0, &half);
@@ -278,11 +276,11 @@ static double blocks(scene_t *s)
     return half;
 }
 
-/* Where the scene is in the world. */
+/* Pose of the scene in the world. */
 static double scene_rot[9], scene_at[3];
 
-/* A scene that stays where it is: n is the way b leaves. */
-static void put(scene_t *s)
+/* Moves the scene into the world and sets its normal. */
+static void place(scene_t *s)
 {
     shape_turn_by(&s->a, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
     shape_turn_by(&s->b, scene_rot, scene_at[0], scene_at[1], scene_at[2]);
@@ -290,18 +288,17 @@ static void put(scene_t *s)
         s->n[k] = (double)(ccd_real_t)scene_rot[3 * k + 2];
 }
 
-/* The whole scene somewhere into the world. */
-static void somewhere(double far_off)
+static void draw_scene_pose(double distance)
 {
     for (int k = 0; k < 3; k++)
-        scene_at[k] = uniform(-far_off, far_off);
+        scene_at[k] = uniform(-distance, distance);
     rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), scene_rot);
 }
 
-static void place(scene_t *s, double far_off)
+static void place_randomly(scene_t *s, double distance)
 {
-    somewhere(far_off);
-    put(s);
+    draw_scene_pose(distance);
+    place(s);
 }
 
 static void yaw(shape_t *s)
@@ -311,40 +308,40 @@ static void yaw(shape_t *s)
     shape_turn_by(s, rot, 0, 0, 0);
 }
 
-static double slop_of(void)
+static double random_slop(void)
 {
     return random_below(8) == 0 ? 0 : pow(10, uniform(single ? -5 : -9, -2.5));
 }
 
-static void rest(void)
+static void resting_blocks(void)
 {
     static const double up[3] = {0, 0, 1};
     for (int i = 0; i < 4000 / share; i++) {
         const double depth = i % 3 ? uniform(-0.01, 0.05) : uniform(-1, 5) * pow(10, uniform(-7, -2)), angle = uniform(0, 6.28);
         double rot[9];
         scene_t s;
-        s.slop = slop_of();
-        blocks(&s);
+        s.slop = random_slop();
+        make_blocks(&s);
         yaw(&s.a);
         yaw(&s.b);
-        if (i % 2) { /* tilted, by what the slop forgives or not */
+        if (i % 2) { /* tilted, within the slop or more */
             rotation_about(cos(angle), sin(angle), 0, i % 4 == 1 ? s.slop * uniform(0, 3) : pow(10, uniform(-4, -0.3)), rot);
             shape_turn_by(&s.b, rot, 0, 0, 0);
         }
-        shape_move(&s.b, uniform(-1, 1), uniform(-1, 1), -depth - reach(&s.b, up, -1));
-        place(&s, i % 3 ? 1 : 30);
+        shape_move(&s.b, uniform(-1, 1), uniform(-1, 1), -depth - support_height(&s.b, up, -1));
+        place_randomly(&s, i % 3 ? 1 : 30);
         compare(&s, i % 2 ? "tilted" : "rest");
     }
 }
 
-/* Hulls of random points, or boxes, anywhere in touch, with the normal of an answer. */
-static void anywhere(void)
+/* Hulls of random points, or boxes, that overlap, with the normal of the least depth. */
+static void random_overlaps(void)
 {
     for (int i = 0; i < 3000 / share; i++) {
         static ccd_real_t points_of[2][36];
         ccd_penetration_t hit;
         scene_t s;
-        s.slop = slop_of();
+        s.slop = random_slop();
         for (int k = 0; k < 36; k++) {
             points_of[0][k] = (ccd_real_t)uniform(-1, 1);
             points_of[1][k] = (ccd_real_t)uniform(-1, 1);
@@ -352,18 +349,18 @@ static void anywhere(void)
         s.a = i % 3 ? shape_polytope(points_of[0], 12) : shape_box(0.5, 0.7, 0.9);
         s.b = i % 2 ? shape_polytope(points_of[1], 12) : shape_box(0.3, 0.8, 0.6);
         shape_move(&s.b, uniform(0, 1.5), 0, 0);
-        place(&s, 1);
+        place_randomly(&s, 1);
         ccd_t ccd = shape_query();
         ccd.epa_tolerance = CCD_REAL(0.0);
         if (OURS(ccdPenetrationProven)(&s.a, &s.b, &ccd, NULL, CCD_WANT_ALL, &hit) != CCD_HIT)
             continue;
         for (int k = 0; k < 3; k++)
             s.n[k] = (double)hit.normal.v[k];
-        if (i % 4) { /* less deep: the minimum stays where it is */
+        if (i % 4) { /* less deep: the normal is the same */
             const double less = (double)hit.depth - pow(10, uniform(single ? -4 : -7, -2));
             shape_move(&s.b, (double)s.b.pos[0] + less * s.n[0], (double)s.b.pos[1] + less * s.n[1], (double)s.b.pos[2] + less * s.n[2]);
         }
-        compare(&s, "anywhere");
+        compare(&s, "random overlap");
     }
 }
 
@@ -383,7 +380,7 @@ static shape_t turned(shape_t s, double x, double y, double z, double angle)
     return s;
 }
 
-/* The contacts of a scene in its own frame: as many as said, at these places, in any order. */
+/* Checks that the scene has n contacts, at these positions in its own frame, in any order. */
 static void expect(const char *what, shape_t a, shape_t b, int n, const double (*xy)[2])
 {
     for (int round = 0; round < 40 / share; round++) {
@@ -394,15 +391,15 @@ static void expect(const char *what, shape_t a, shape_t b, int n, const double (
         s.a = a;
         s.b = b;
         s.slop = pow(10, uniform(single ? -4 : -6, -3));
-        place(&s, 1);
-        /* an answer's normal is not exact either: turned by less than the slop forgives */
+        place_randomly(&s, 1);
+        /* The normal of a penetration is not exact: turned within the slop. */
         for (k = 0, room = 0; k < 3; k++) {
             s.n[k] += 0.1 * fmin(s.slop, error) * uniform(-1, 1);
             room += s.n[k] * s.n[k];
         }
         for (k = 0; k < 3; k++)
             s.n[k] = (double)(ccd_real_t)(s.n[k] / sqrt(room));
-        room = 4 * s.slop + 64 * noise_of(&s);
+        room = 4 * s.slop + 64 * rounding(&s);
         contacts_t c = contacts_of(&s);
         CHECK(c.n == n, "%s: %d contacts, slop %g", what, c.n, s.slop);
         for (int i = 0; i < n; i++) {
@@ -416,14 +413,14 @@ static void expect(const char *what, shape_t a, shape_t b, int n, const double (
                 }
                 least = fmin(least, hypot(local[0] - xy[i][0], local[1] - xy[i][1]));
             }
-            CHECK(least <= room, "%s: nothing at %g %g, nearest %g, slop %g", what, xy[i][0], xy[i][1], least, s.slop);
+            CHECK(least <= room, "%s: no contact at %g %g, closest %g, slop %g", what, xy[i][0], xy[i][1], least, s.slop);
         }
-        judge_contacts(&s, &c, what);
+        check_contacts(&s, &c, what);
     }
 }
 
-/* Pairs of every category, along any direction, or with the normal of an answer: then every point is
- * within the slop of its object, as 200 directions tell. */
+/* Pairs of every category with random normals, or with that of a penetration: then every point is within the slop
+ * of its object. */
 static void categories(void)
 {
     for (int i = 0; i < 6000 / share; i++) {
@@ -449,10 +446,10 @@ static void categories(void)
             n = hit.normal;
         judge_vec(&n, s.n);
         contacts_t c = contacts_at_most(&s, 8);
-        judge_heights(&s, &c, category_text(category));
+        check_heights(&s, &c, category_text(category));
         for (int k = 0; k < c.n && i % 3 == 1; k++) {
-            const double out = fmax(outside(&s.a, &c.c[k].point1, 200), outside(&s.b, &c.c[k].point2, 200));
-            CHECK(out <= 1.01 * slop_in_force(&s) + 64 * noise_of(&s), "%s: %g outside, slop %g, %d contacts", category_text(category), out, s.slop, c.n);
+            const double out = fmax(distance_outside(&s.a, &c.c[k].point1, 200), distance_outside(&s.b, &c.c[k].point2, 200));
+            CHECK(out <= 1.01 * effective_slop(&s) + 64 * rounding(&s), "%s: %g outside, slop %g, %d contacts", category_text(category), out, s.slop, c.n);
         }
     }
 }
@@ -498,7 +495,7 @@ static void shapes(void)
            at(turned(shape_box(0.5, 1, 0.5), 0, 1, 0, pi / 4), 0, 0, sqrt(0.5) - 1e-4), 1, middle);
 }
 
-/* A disc is inscribed: all points within it, most of its area. */
+/* Checks that a disc's contacts are on its rim, and enclose most of its area. */
 static void discs(void)
 {
     for (int i = 0; i < 200 / share; i++) {
@@ -509,25 +506,25 @@ static void discs(void)
         s.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
         s.b = i % 3 ? shape_cylinder(radius, 0.5) : shape_cone(radius, 0.5);
         s.b = at(turned(s.b, cos(angle), sin(angle), 0, tilt * s.slop), 0, 0, 0.5);
-        place(&s, 1);
+        place_randomly(&s, 1);
         frame_t f = manifold_frame(s.n);
         contacts_t c = contacts_of(&s);
-        judge_contacts(&s, &c, "disc");
-        flats_t found = flats_of(&c, &f);
+        check_contacts(&s, &c, "disc");
+        polygon_t found = polygon_of(&c, &f);
         for (int j = 0; j < 3; j++)
             axis[j] = s.b.pos[j];
         for (int j = 0; j < found.n; j++) {
-            const flat_t o = manifold_flat(&f, axis);
+            const point2_t o = manifold_project(&f, axis);
             const double from = (double)hypotl(found.p[j].x - o.x, found.p[j].y - o.y);
-            CHECK(fabs(from - radius) <= 4 * s.slop + 64 * noise_of(&s), "disc: %g from the axis, radius %g", from, radius);
+            CHECK(fabs(from - radius) <= 4 * s.slop + 64 * rounding(&s), "disc: %g from the axis, radius %g", from, radius);
         }
-        CHECK((double)flat_area(&found) >= 0.85 * 3.14159 * radius * radius, "disc: area %g of %g, %d points",
-              (double)flat_area(&found), 3.14159 * radius * radius, c.n);
+        CHECK(polygon_area(&found) >= 0.85 * 3.14159 * radius * radius, "disc: area %g of %g, %d points",
+              polygon_area(&found), 3.14159 * radius * radius, c.n);
     }
 }
 
-/* A round body lies along the edge of a block and turns away from it: its closer end is beyond the edge, by no more
- * than its surface falls off within the slop. */
+/* A round body lies along the edge of a block and turns away from it: its closer end is beyond the edge, where its
+ * surface is still within the slop. */
 static void along_edges(void)
 {
     for (int i = 0; i < 1000 / share; i++) {
@@ -541,18 +538,18 @@ static void along_edges(void)
         s.b = turned(i % 4 < 2 ? shape_cylinder(radius, half) : shape_capsule(radius, half), 1, 0, 0, pi / 2);
         rotation_about(0, 0, 1, -angle, rot);
         shape_turn_by(&s.b, rot, x + beyond + half * sin(angle), end + half * cos(angle), radius - 1e-5);
-        place(&s, 1);
+        place_randomly(&s, 1);
         contacts_t c = contacts_of(&s);
-        judge_contacts(&s, &c, "along an edge");
+        check_contacts(&s, &c, "along an edge");
     }
 }
 
 /* --- the normal's own error ------------------------------------------------------------------ */
 
-static double depth_along(const scene_t *s, const double n[3]) { return reach(&s->a, n, 1) - reach(&s->b, n, -1); }
+static double depth_along(const scene_t *s, const double n[3]) { return support_height(&s->a, n, 1) - support_height(&s->b, n, -1); }
 
-/* A normal as an answer may have it, and no slop of the caller's: turned until the depth along it is 0.1 % more than
- * the least one. What touches stays what it is: an ellipsoid on a face touches in a point, a box in its edge or face. */
+/* Slop 0, and a normal turned until the depth along it is 0.1 % more than the least, as that of a penetration may be:
+ * an ellipsoid on a face still touches in a point, a box in its edge or face. */
 static void imperfect_normals(void)
 {
     static const double up[3] = {0, 0, 1};
@@ -560,7 +557,7 @@ static void imperfect_normals(void)
         const double depth = pow(10, uniform(single ? -2 : -3, -1.5)), angle = uniform(0, 6.28), x = uniform(0.8, 1.2), y = uniform(0.8, 1.2);
         const double dir[3] = {cos(angle), sin(angle), 0};
         double rot[9], low = 0, high = 1, most;
-        flats_t face, floor, found;
+        polygon_t face, floor, found;
         scene_t s;
         s.slop = 0;
         s.a = at(shape_box(x, y, 0.5), 0, 0, -0.5);
@@ -573,11 +570,11 @@ static void imperfect_normals(void)
             shape_turn(&s.b, rot);
         yaw(&s.b);
         shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), 0);
-        shape_move(&s.b, (double)s.b.pos[0], (double)s.b.pos[1], -depth - reach(&s.b, up, -1));
-        /* the exact place: the corners of b's lowest face, or an ellipsoid's lowest point */
+        shape_move(&s.b, (double)s.b.pos[0], (double)s.b.pos[1], -depth - support_height(&s.b, up, -1));
+        /* the exact region: b's lowest face, or an ellipsoid's lowest point */
         frame_t f = manifold_frame(up);
         if (i % 3)
-            manifold_face(&s.b, &f, -1, 0.1 * depth, noise_of(&s), &face, &most);
+            manifold_face(&s.b, &f, -1, 0.1 * depth, rounding(&s), &face, &most);
         else {
             const ccd_vec3_t down = {{0, 0, -1}};
             ccd_vec3_t v;
@@ -586,10 +583,10 @@ static void imperfect_normals(void)
             for (int k = 0; k < 3; k++)
                 p[k] = v.v[k];
             face.n = 1;
-            face.p[0] = manifold_flat(&f, p);
+            face.p[0] = manifold_project(&f, p);
         }
-        manifold_face(&s.a, &f, 1, 0.1 * depth, noise_of(&s), &floor, &most);
-        face = flat_clip(&face, &floor); /* a corner may be beyond the edge */
+        manifold_face(&s.a, &f, 1, 0.1 * depth, rounding(&s), &floor, &most);
+        face = polygon_clip(&face, &floor);
         for (int j = 0; j < 60; j++) {
             const double t = (low + high) / 2, length = sqrt(1 + t * t);
             for (int k = 0; k < 3; k++)
@@ -597,33 +594,51 @@ static void imperfect_normals(void)
             *(depth_along(&s, s.n) < 1.001 * depth ? &low : &high) = t;
         }
         contacts_t c = contacts_of(&s);
-        found = flats_of(&c, &f);
-        CHECK((double)flat_apart(&face, &found) <= 2e-3, "imperfect: %d contacts, %g from the truth of %d, depth %g", c.n,
-              (double)flat_apart(&face, &found), face.n, depth);
+        found = polygon_of(&c, &f);
+        CHECK(polygon_difference(&face, &found) <= 2e-3, "imperfect: %d contacts, %g from the truth of %d, depth %g", c.n,
+              polygon_difference(&face, &found), face.n, depth);
         CHECK(c.n == face.n, "imperfect: %d contacts for %d", c.n, face.n);
         for (int k = 0; k < c.n; k++)
-            CHECK(across(&s, &c.c[k]) <= 4 * noise_of(&s), "imperfect: points %g across", across(&s, &c.c[k]));
+            CHECK(lateral_distance(&s, &c.c[k]) <= 4 * rounding(&s), "imperfect: points %g across", lateral_distance(&s, &c.c[k]));
     }
 }
 
-/* --- steadiness ------------------------------------------------------------------------------ */
+/* --- continuity ------------------------------------------------------------------------------ */
 
-/* Is a segment's end on a side of its face that it meets at less than 10 degrees, so that it runs along it? */
-static int grazes(const flats_t *f, const flats_t *face)
+/* Returns whether a segment is within 10 degrees of a side of the face. */
+static int is_along_a_side(const polygon_t *f, const polygon_t *face)
 {
     int grazing = 0;
     for (int i = 0; i < face->n && f->n == 2; i++) {
-        const flat_t p = face->p[i], q = face->p[(i + 1) % face->n], r = f->p[0], t = f->p[1];
+        const point2_t p = face->p[i], q = face->p[(i + 1) % face->n], r = f->p[0], t = f->p[1];
         const double across = (double)((q.x - p.x) * (t.y - r.y) - (q.y - p.y) * (t.x - r.x));
         grazing |= fabs(across) < 0.1745 * (double)(hypotl(q.x - p.x, q.y - p.y) * hypotl(t.x - r.x, t.y - r.y));
     }
     return grazing;
 }
 
-/* b turns about its own middle and moves in every frame, and so does the world. */
+enum { REST, DRIFT, SLIDE, SPIN, ROLL, ROCK };
+static const char *const motion_name[] = {"resting", "drifting", "sliding", "spinning", "rolling", "rocking"};
+
+/* Motion of each frame: b turns about its own center and moves, and so does the world. */
 typedef struct {
     double turn[9], by[3], world[9], drift;
 } motion_t;
+
+/* Returns the motion of b by `step`, metres or radians, in the plane's direction `heading`. A rolling body has the
+ * radius 0.3. */
+static motion_t motion_of(int kind, double heading, double step)
+{
+    const double x = cos(heading), y = sin(heading), moves = kind == SLIDE || kind == ROLL ? step : 0;
+    motion_t m = {.by = {moves * x, moves * y, 0}};
+    if (kind == ROLL)
+        rotation_about(-y, x, 0, step / 0.3, m.turn);
+    else if (kind == ROCK)
+        rotation_about(x, y, 0, step, m.turn);
+    else
+        rotation_about(0, 0, 1, kind == SPIN ? step : 0, m.turn);
+    return m;
+}
 
 static void next_frame(scene_t *s, const motion_t *m)
 {
@@ -638,43 +653,35 @@ static void next_frame(scene_t *s, const motion_t *m)
     rotation_times(m->world, old, scene_rot);
 }
 
-enum { SLIDE, SPIN, ROCK, ROLL, MOTIONS };
-static const char *const motion_name[MOTIONS] = {"sliding", "spinning", "rocking", "rolling"};
-
-static void steady(int motion, scene_t start, double step)
+/* Checks that the region moves by no more than the objects and the world. */
+static void check_continuity(int kind, scene_t start, double step)
 {
-    const double angle = uniform(0, 6.28), axis[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-    /* rolling: along x, about y */
-    motion_t m = {.by = {motion == SLIDE ? step * cos(angle) : motion == ROLL ? step : 0, motion == SLIDE ? step * sin(angle) : 0, 0}};
-    flats_t before;
+    const double axis[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, heading = kind == ROLL ? 0 : uniform(0, 6.28);
+    motion_t m = motion_of(kind, heading, kind == ROCK ? fmin(step, 0.005 * start.slop) : step);
+    polygon_t before;
     frame_t f;
     before.n = 0;
-    if (motion == ROCK)
-        rotation_about(cos(angle), sin(angle), 0, fmin(step, 0.005 * start.slop), m.turn);
-    else
-        rotation_about(0, motion == ROLL, motion != ROLL, motion == SPIN ? step : motion == ROLL ? step / 0.3 : 0, m.turn);
     rotation_about(axis[0], axis[1], axis[2], 0.1 * step, m.world);
     for (int frame = 0; frame < 20; frame++) {
         scene_t s = start;
-        put(&s);
-        /* one frame for all: the normal hardly turns */
+        place(&s);
+        /* one coordinate frame for all: the normal hardly turns */
         if (frame == 0)
             f = manifold_frame(s.n);
         contacts_t c = contacts_of(&s);
-        judge_contacts(&s, &c, motion_name[motion]);
-        flats_t found = flats_of(&c, &f);
+        check_contacts(&s, &c, motion_name[kind]);
+        polygon_t found = polygon_of(&c, &f);
         if (frame > 0) {
-            /* b's own step, and that of the world */
-            const double allowed = 10 * (2 * step + noise_of(&start) + 16 * noise_of(&s));
-            const double change = fabs((double)(flat_area(&found) - flat_area(&before))), far = (double)flat_apart(&before, &found);
-            CHECK(change <= allowed * ((double)flat_perimeter(&before) + (double)flat_perimeter(&found)) / 2,
-                  "%s by %g: the area changes by %g, %d and %d points, slop %g", motion_name[motion], step, change, before.n,
+            const double allowed = 10 * (2 * step + rounding(&start) + 16 * rounding(&s));
+            const double change = fabs(polygon_area(&found) - polygon_area(&before)), far = polygon_difference(&before, &found);
+            CHECK(change <= allowed * (polygon_perimeter(&before) + polygon_perimeter(&found)) / 2,
+                  "%s by %g: the area changes by %g, %d and %d points, slop %g", motion_name[kind], step, change, before.n,
                   found.n, s.slop);
-            const frame_t now = manifold_frame(s.n); /* a face is one along its own normal alone */
-            flats_t face;
+            const frame_t now = manifold_frame(s.n); /* the exact normal */
+            polygon_t face;
             double top;
-            manifold_face(&s.a, &now, 1, slop_in_force(&s), noise_of(&s), &face, &top);
-            CHECK(far <= allowed || grazes(&before, &face) || grazes(&found, &face), "%s by %g: the region moves by %g, %d and %d points, slop %g", motion_name[motion], step, far,
+            manifold_face(&s.a, &now, 1, effective_slop(&s), rounding(&s), &face, &top);
+            CHECK(far <= allowed || is_along_a_side(&before, &face) || is_along_a_side(&found, &face), "%s by %g: the region moves by %g, %d and %d points, slop %g", motion_name[kind], step, far,
                   before.n, found.n, s.slop);
         }
         before = found;
@@ -685,55 +692,51 @@ static void steady(int motion, scene_t start, double step)
 static void motions(void)
 {
     for (int i = 0; i < 600 / share; i++) {
-        const int motion = i % MOTIONS;
+        const int kind = SLIDE + i % 4;
         scene_t s;
-        double half = blocks(&s);
+        double half = make_blocks(&s);
         s.slop = pow(10, uniform(single ? -4 : -7, -3));
         yaw(&s.a);
-        if (motion == SPIN && i % 8 == 1) {
+        if (kind == SPIN && i % 8 == 1) {
             half = 0.4;
             s.b = shape_cylinder(uniform(0.3, 0.8), half);
         }
-        if (motion == ROLL) {
+        if (kind == ROLL) {
             half = 0.3;
-            s.b = turned(i % 8 == 3 ? shape_capsule(half, 0.5) : shape_cylinder(half, 0.5), 1, 0, 0, pi / 2);
+            s.b = turned(i % 8 < 4 ? shape_capsule(half, 0.5) : shape_cylinder(half, 0.5), 1, 0, 0, pi / 2);
         }
         shape_move(&s.b, uniform(-0.5, 0.5), uniform(-0.5, 0.5), half - 1e-5);
-        if (motion == SLIDE)
+        if (kind == SLIDE)
             yaw(&s.b);
-        somewhere(0);
-        steady(motion, s, pow(10, uniform(single ? -4 : -8, -3)));
+        draw_scene_pose(0);
+        check_continuity(kind, s, pow(10, uniform(single ? -4 : -8, -3)));
     }
 }
 
-/* --- a memory ------------------------------------------------------------------------------------- */
+/* --- the cache ------------------------------------------------------------------------------------ */
 
-enum { REST, DRIFT, SLIDING, TURNING, ROLLING, MOVES };
-static const char *const move_name[MOVES] = {"resting", "drifting", "sliding", "turning", "rolling"};
-
-/* A body on a table, twenty frames of each move, the whole scene drifting in all but the first: with its memory it
- * costs half of what it costs without, and every point keeps its id; the same in the other order. */
-static void remembered(const char *what, shape_t table, shape_t body, int moves)
+/* Moves a body on a table for twenty frames in each of the first `kinds` motions, in one order of the objects and in
+ * alternating orders. In all but the first the scene drifts. With the cache half of the support calls are enough, and
+ * every contact keeps its id. */
+static void check_cache(const char *what, shape_t table, shape_t body, int kinds)
 {
-    for (int run = 0; run < 2 * moves; run++) {
-        const int move = run % moves, swaps = run >= moves;
+    for (int run = 0; run < 2 * kinds; run++) {
+        const int kind = run % kinds, swaps = run >= kinds;
         static ccd_manifold_cache_t memory;
-        motion_t m = {.by = {move == SLIDING ? 2e-3 : 0, move == SLIDING ? 1e-3 : move == ROLLING ? 2e-3 : 0, 0},
-                      .drift = move == REST ? 0 : 0.05};
+        motion_t m = motion_of(kind, kind == ROLL ? pi / 2 : 0.46, kind == SPIN ? 0.02 : 2e-3);
         scene_t start = {.a = table, .b = body, .slop = 1e-3};
         unsigned long cold = 0, warm = 0;
         contacts_t last;
         memset(&memory, 0, sizeof memory);
         last.n = 0;
-        somewhere(0);
-        /* rolling: along y, about x; 0.3 is the radius */
-        rotation_about(move == ROLLING, 0, move != ROLLING, move == TURNING ? 0.02 : move == ROLLING ? -2e-3 / 0.3 : 0, m.turn);
-        rotation_about(1, 2, -1, move == REST ? 0 : 0.01, m.world);
+        draw_scene_pose(0);
+        m.drift = kind == REST ? 0 : 0.05;
+        rotation_about(1, 2, -1, kind == REST ? 0 : 0.01, m.world);
         for (int frame = 0; frame < 20; frame++) {
-            int keep = 0;
+            int same_ids = 0;
             next_frame(&start, &m);
             scene_t s = start;
-            put(&s);
+            place(&s);
             if (swaps && frame % 2) {
                 const shape_t a = s.a;
                 s.a = s.b;
@@ -741,68 +744,64 @@ static void remembered(const char *what, shape_t table, shape_t body, int moves)
                 for (int k = 0; k < 3; k++)
                     s.n[k] = -s.n[k];
             }
-            memory_in_use = NULL;
+            cache = NULL;
             contacts_t none = contacts_at_most(&s, 4);
             cold += s.a.calls + s.b.calls;
-            memory_in_use = &memory;
+            cache = &memory;
             contacts_t c = contacts_at_most(&s, 4);
             if (frame > 0)
                 warm += s.a.calls + s.b.calls;
-            judge_contacts(&s, &c, what);
-            CHECK(c.n == none.n, "%s, %s: %d points, %d without a memory", what, move_name[move], c.n, none.n);
+            check_contacts(&s, &c, what);
+            CHECK(c.n == none.n, "%s, %s: %d contacts, %d without a cache", what, motion_name[kind], c.n, none.n);
             for (int i = 0; i < c.n; i++) {
                 CHECK(c.c[i].id != 0, "%s: no id", what);
                 for (int k = 0; k < i; k++)
                     CHECK(c.c[i].id != c.c[k].id, "%s: id twice", what);
                 for (int k = 0; k < last.n; k++)
-                    keep += c.c[i].id == last.c[k].id;
+                    same_ids += c.c[i].id == last.c[k].id;
             }
-            CHECK(frame == 0 || keep == c.n, "%s, %s: %d of %d ids stay in frame %d", what, move_name[move], keep, c.n, frame);
+            CHECK(frame == 0 || same_ids == c.n, "%s, %s: %d of %d ids stay in frame %d", what, motion_name[kind], same_ids, c.n, frame);
             last = c;
         }
-        CHECK(2 * warm <= cold, "%s, %s: %lu calls with a memory, %lu without", what, move_name[move], warm, cold);
-        if (!swaps)
-            printf("%s, %s: %.2f support points with a memory, %.2f without\n", what, move_name[move], (double)warm / 19,
-                   (double)cold / 20);
+        CHECK(2 * warm <= cold, "%s, %s: %lu support calls with a cache, %lu without", what, motion_name[kind], warm, cold);
     }
 }
 
-static void memories(void)
+static void caches(void)
 {
     const shape_t table = at(shape_box(2, 2, 0.5), 0, 0, -0.5);
-    remembered("box", table, at(turned(shape_box(0.3, 0.2, 0.25), 0, 0, 1, 0.3), 0.1, 0.2, 0.249), ROLLING);
-    remembered("hull", table, at(prism(1, 6, 0.3), 0.1, 0.2, 0.299), ROLLING);
-    remembered("cylinder", table, at(shape_cylinder(0.3, 0.25), 0.1, 0.2, 0.249), ROLLING);
-    remembered("cone", table, at(shape_cone(0.3, 0.25), 0.1, 0.2, 0.249), ROLLING);
-    remembered("capsule", table, at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), MOVES);
-    remembered("lying cylinder", table, at(turned(shape_cylinder(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), MOVES);
-    remembered("ball", table, at(shape_sphere(0.3), 0.1, 0.2, 0.299), MOVES);
+    check_cache("box", table, at(turned(shape_box(0.3, 0.2, 0.25), 0, 0, 1, 0.3), 0.1, 0.2, 0.249), 4);
+    check_cache("hull", table, at(prism(1, 6, 0.3), 0.1, 0.2, 0.299), 4);
+    check_cache("cylinder", table, at(shape_cylinder(0.3, 0.25), 0.1, 0.2, 0.249), 4);
+    check_cache("cone", table, at(shape_cone(0.3, 0.25), 0.1, 0.2, 0.249), 4);
+    check_cache("capsule", table, at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), 5);
+    check_cache("lying cylinder", table, at(turned(shape_cylinder(0.3, 0.25), 0, 1, 0, pi / 2), 0.1, 0.2, 0.299), 5);
+    check_cache("ball", table, at(shape_sphere(0.3), 0.1, 0.2, 0.299), 5);
 }
 
-/* A block comes down: from a corner or an edge onto its face, and up again. Its memory is always of
- * another pose. */
+/* Tips a block from a corner or an edge onto its face, and up again, with the cache of the last pose. */
 static void tipping(void)
 {
     static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
     static const double up[3] = {0, 0, 1};
     for (int i = 0; i < 400 / share; i++) {
         static ccd_manifold_cache_t memory;
-        const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(slop_of(), 64 * real_eps());
+        const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(random_slop(), 64 * real_eps());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
         memset(&memory, 0, sizeof memory);
-        memory_in_use = &memory;
-        somewhere(1);
+        cache = &memory;
+        draw_scene_pose(1);
         for (int j = 0; j < (int)(sizeof tilts / sizeof *tilts); j++) {
             scene_t s = {.a = at(shape_box(2, 2, 0.5), 0, 0, -0.5), .b = turned(block, cos(angle), sin(angle), 0, tilts[j]), .slop = slop};
-            shape_move(&s.b, 0, 0, -1e-4 - reach(&s.b, up, -1));
-            put(&s);
+            shape_move(&s.b, 0, 0, -1e-4 - support_height(&s.b, up, -1));
+            place(&s);
             compare(&s, "tipping");
         }
     }
 }
 
-/* Whatever bits it holds. */
-static void garbage(void)
+/* Checks that a cache with any content changes no contact. */
+static void arbitrary_caches(void)
 {
     for (int i = 0; i < 20000 / share; i++) {
         static ccd_manifold_cache_t memory, good;
@@ -815,20 +814,20 @@ static void garbage(void)
               : i % 3 == 1 ? at(shape_cylinder(0.5, 0.6), 0, 0, 0.59)
                            : at(turned(shape_capsule(0.3, 0.25), 0, 1, 0, 1.5707963267949), 0, 0, 0.29);
         if (i % 64 == 0)
-            place(&s, 1);
+            place_randomly(&s, 1);
         else
-            put(&s);
-        memory_in_use = &memory;
+            place(&s);
+        cache = &memory;
         switch (i % 4) {
-        case 0: /* noise */
+        case 0: /* random bytes */
             for (size_t k = 0; k < sizeof memory; k++)
                 bytes[k] = (unsigned char)random_below(256);
             break;
-        case 1: /* a good one with noise in it */
+        case 1: /* a valid cache with random bits */
             for (int j = 0; j < 1 + i % 7; j++)
                 bytes[random_below((int)sizeof memory)] ^= (unsigned char)(1 + random_below(255));
             break;
-        case 2: /* no numbers */
+        case 2: /* NaN and infinity */
             for (int j = 0; j < CCD_MANIFOLD_CACHE_REALS; j++)
                 if (random_below(4) == 0)
                     memory.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
@@ -836,36 +835,37 @@ static void garbage(void)
         default: break; /* of another pair */
         }
         contacts_t c = contacts_at_most(&s, 8);
-        judge_contacts(&s, &c, "garbage");
-        CHECK(c.n == (i % 3 == 0 ? 4 : i % 3 == 1 ? 8 : 2), "garbage: %d points", c.n);
+        check_contacts(&s, &c, "arbitrary cache");
+        CHECK(c.n == (i % 3 == 0 ? 4 : i % 3 == 1 ? 8 : 2), "arbitrary cache: %d contacts", c.n);
         good = memory;
     }
 }
 
-/* --- fewer points ------------------------------------------------------------------------------- */
+/* --- fewer contacts ----------------------------------------------------------------------------- */
 
-static void fewer(void)
+/* Checks that fewer contacts are the deepest one and those that enclose most of the area. */
+static void fewer_contacts(void)
 {
     static const ccd_contact_t none;
     for (int i = 0; i < 300 / share; i++) {
         double last = 0;
         scene_t s;
-        const double half = blocks(&s);
+        const double half = make_blocks(&s);
         s.slop = 1e-4;
         shape_move(&s.b, uniform(-0.3, 0.3), uniform(-0.3, 0.3), half - 0.01);
         yaw(&s.b);
-        place(&s, 1);
+        place_randomly(&s, 1);
         frame_t f = manifold_frame(s.n);
         contacts_t all = contacts_of(&s);
         for (int max = 1; max <= all.n; max++) {
-            const contacts_t some = contacts_at_most(&s, max);
-            const flats_t flats = flats_of(&some, &f);
-            const double area = (double)flat_area(&flats);
-            CHECK(some.n == max, "%d of at most %d of %d", some.n, max, all.n);
-            CHECK(same_bits(&some.c[0], &all.c[0], sizeof all.c[0]), "the first of %d", max);
+            const contacts_t part = contacts_at_most(&s, max);
+            const polygon_t polygon = polygon_of(&part, &f);
+            const double area = polygon_area(&polygon);
+            CHECK(part.n == max, "%d of at most %d of %d", part.n, max, all.n);
+            CHECK(same_bits(&part.c[0], &all.c[0], sizeof all.c[0]), "the first of %d", max);
             CHECK(area >= last - 1e-6, "area %g of %d points, %g before", area, max, last);
-            for (int k = max; k < ROOM; k++)
-                CHECK(same_bits(&some.c[k], &none, sizeof none), "written beyond max");
+            for (int k = max; k < MAX_CONTACTS; k++)
+                CHECK(same_bits(&part.c[k], &none, sizeof none), "written beyond max");
             last = area;
         }
     }
@@ -876,29 +876,28 @@ int main(int argc, char **argv)
     static ccd_manifold_cache_t memory;
     share = argc > 1 ? atoi(argv[1]) : share;
     for (int round = 0; round < 3; round++) {
-        /* The same scenes without a memory, with that of the last pair, with the pair's own. */
+        /* The same scenes without a cache, with that of the last pair, with the pair's own. */
         random_state = 88172645463325252u;
-        memory_in_use = round ? &memory : NULL;
-        asked_twice = round == 2;
-        rest();
-        anywhere();
+        cache = round ? &memory : NULL;
+        runs_twice = round == 2;
+        resting_blocks();
+        random_overlaps();
         shapes();
         discs();
         if (!round)
-            fewer();
-        asked_twice = 0;
+            fewer_contacts();
+        runs_twice = 0;
         motions();
     }
     categories();
-    memories();
-    /* The same blocks whatever the pairs before took. */
+    caches();
     random_state = 88172645463325252u;
     tipping();
-    garbage();
-    memory_in_use = NULL;
+    arbitrary_caches();
+    cache = NULL;
     along_edges();
     imperfect_normals();
-    printf("%lu regions, %lu segments, %lu points, %lu beside each other, %lu doubtful\n", regions, segments, points, beside, doubtful);
-    CHECK(regions > 1000U / share && segments > 10U / share && points > 10U / share && beside > 300U / share, "too few of a kind");
+    printf("%lu regions, %lu segments, %lu points, %lu disjoint, %lu ambiguous\n", regions, segments, points, disjoint, ambiguous);
+    CHECK(regions > 1000U / share && segments > 10U / share && points > 10U / share && disjoint > 300U / share, "too few of a kind");
     return checks_end();
 }

@@ -12,77 +12,53 @@ use std::process::Command;
 
 const NO_ARGS: [&str; 0] = [];
 
-/// A C program of this directory on this library.
-fn program(name: &str) -> Program {
-    let program = Program::c(name).source(format!("tests/extension/{name}.c"));
-    strict(program)
-}
-
-/// The same in C++.
-fn cpp(name: &str) -> Program {
-    Program::cpp(name).source(format!("tests/extension/{name}.cpp"))
-}
-
-/// A program of c-tests/examples on this library.
-fn example(file: &str) -> Program {
-    let (name, language) = file.split_once('.').expect("a file's ending");
-    let program = match language {
-        "cpp" => Program::cpp(name),
-        _ => Program::c(name),
-    };
-    strict(program.source(format!("examples/{file}")))
-}
-
-/// One scene in how many is made: in so many under a tool, which looks at memory.
-fn one_in(many: u32) -> String {
-    if harness::under_tool() { many } else { 1 }.to_string()
-}
-
-fn strict(program: Program) -> Program {
-    let program = program.flag("-pedantic").flag("-Werror");
+/// Returns a C or C++ program of c-tests on this library.
+fn program(path: &str) -> Program {
+    let file = Path::new(path);
+    let program = Program::c(&file.file_stem().expect("a file").to_string_lossy()).source(path);
+    let program = if file.extension() == Some("cpp".as_ref()) { program.as_cpp() } else { program };
     program.flag("-DOURS_ALONE").link_ours_shared()
+}
+
+/// Makes warnings errors.
+fn strict(program: Program) -> Program {
+    program.flag("-pedantic").flag("-Werror")
+}
+
+/// Returns N where one scene in N is run: 1, or `under_tool` under a tool, which checks memory.
+fn one_in(under_tool: u32) -> String {
+    if harness::under_tool() { under_tool } else { 1 }.to_string()
 }
 
 #[test]
 fn cpp_wrapper() {
-    // A tool looks at memory, which is the same in both standards.
-    let standards = if harness::under_tool() { &["c++17"][..] } else { &["c++17", "c++20"] };
-    for standard in standards {
-        let wrapper = strict(cpp("wrapper")).standard(standard);
-        wrapper.build().run(NO_ARGS);
+    for standard in ["c++17", "c++20"] {
+        strict(program("tests/extension/wrapper.cpp")).standard(standard).build().run(NO_ARGS);
     }
 }
 
-/// Every call with every argument that none can work with; and what is wanted.
 #[test]
-fn bad_input_and_what_may_be_null() {
-    program("bad_input").build().run(NO_ARGS);
-}
-
-/// What ccdCheck finds wrong with a support function, and that it finds nothing wrong with others.
-#[test]
-fn odd_support_functions_are_told() {
-    program("support_check").build().run(NO_ARGS);
+fn faults_of_support_functions_are_detected() {
+    strict(program("tests/extension/support_check.c")).build().run(NO_ARGS);
 }
 
 #[test]
-fn answers_from_every_kind_of_state() {
-    program("warm_states").build().run([harness::rounds(400)]);
-}
-
-/// pos against an integral, along bodies that tilt, tip, slide and roll.
-#[test]
-fn pos_is_the_centre_of_pressure() {
-    program("pressure").build().run([one_in(8)]);
+fn results_from_every_kind_of_state() {
+    strict(program("tests/extension/warm_states.c")).build().run([harness::rounds(400)]);
 }
 
 #[test]
-fn contacts_are_the_exact_ones() {
-    program("contacts").build().run([one_in(10)]);
+fn pos_is_the_center_of_pressure() {
+    strict(program("tests/extension/pressure.c")).build().run([one_in(8)]);
 }
 
-/// `<ccd/fcl.hpp>`. In single precision all of FCL is compiled here: it is made of templates.
-/// A tool takes gcc half a minute for each standard.
+#[test]
+fn contacts_are_exact() {
+    strict(program("tests/extension/contacts.c")).build().run([one_in(10)]);
+}
+
+/// Checks `<ccd/fcl.hpp>`. In single precision this compiles FCL's templates for float.
+/// (With a sanitizer gcc takes half a minute for each standard.)
 #[test]
 fn fcl_header() {
     let (standards, flags): (&[&str], [&str; 2]) = match Precision::CURRENT {
@@ -91,23 +67,22 @@ fn fcl_header() {
         Precision::Single => (&["c++11"], ["-O0", "-g0"]),
     };
     for standard in standards {
-        let mut program = cpp("fcl").standard(standard).library("fcl");
+        let mut program = program("tests/extension/fcl.cpp").standard(standard).library("fcl");
         for flag in ["-D_GNU_SOURCE", flags[0], flags[1], "-isystem/usr/include/eigen3"] {
             program = program.flag(flag);
         }
         let poses = if harness::under_tool() { "1" } else { "2" };
-        program.link_ours_shared().build().run([poses]);
+        program.build().run([poses]);
     }
 }
 
-/// The example for FCL: nothing meets at first; then the box rests on its corners, the ball on a point.
+/// Checks the output of the example for FCL: no contact at first; then four of the box and one of the ball.
 #[cfg(not(feature = "single"))]
 #[test]
 fn fcl_example() {
-    let example = Program::cpp("fcl_example").source("examples/fcl.cpp");
-    let example = example.flag("-isystem/usr/include/eigen3").library("fcl");
-    let said = example.link_ours_shared().build().run(NO_ARGS).stdout;
-    let lines: Vec<&str> = said.lines().collect();
+    let example = program("examples/fcl.cpp").flag("-isystem/usr/include/eigen3").library("fcl");
+    let output = example.build().run(NO_ARGS).stdout;
+    let lines: Vec<&str> = output.lines().collect();
     assert_eq!(
         lines[..4],
         [
@@ -121,23 +96,22 @@ fn fcl_example() {
     assert_eq!(deep.count(), 5);
 }
 
-/// What the hash table of states prints: no more room than the pairs that meet need, and a tenth of
-/// the callbacks saved for these pairs, fast as they turn.
+/// Checks the output of the hash table of states: its size follows the pairs that are near, and their
+/// states save a tenth of the callbacks.
 #[test]
-fn states_in_a_hash_table() {
-    let lines = example("pair_table.c").build().run(NO_ARGS).stdout;
-    let lines: Vec<&str> = lines.lines().collect();
-    assert_eq!(lines.len(), 6);
-    for line in lines {
+fn pair_table_example() {
+    let output = strict(program("examples/pair_table.c")).build().run(NO_ARGS).stdout;
+    assert_eq!(output.lines().count(), 6);
+    for line in output.lines() {
         let numbers = line.split(' ').filter_map(|word| word.parse::<f64>().ok());
-        let [near, _, warm, cold, places] = numbers.collect::<Vec<_>>()[..] else {
+        let [near, _, warm, cold, slots] = numbers.collect::<Vec<_>>()[..] else {
             panic!("{line}");
         };
-        assert!(near > 150.0 && warm <= 0.9 * cold && places <= 1024.0, "{line}");
+        assert!(near > 150.0 && warm <= 0.9 * cold && slots <= 1024.0, "{line}");
     }
 }
 
-/// What the world in Rust prints.
+/// Runs the Rust example and returns its output.
 fn rust_world() -> String {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(harness::root());
@@ -151,13 +125,12 @@ fn rust_world() -> String {
     String::from_utf8_lossy(&out.stdout).into_owned()
 }
 
-/// What the small worlds print, the same in each language: everything comes to rest on the table, the box on four
-/// points, the capsule on two, the hull, a square pyramid, on four; the hull and the capsule
-/// fall side by side, the nearest of what is apart, and the box comes no nearer to either.
+/// Checks that the worlds in C, C++ and Rust print the same: on the table rest the box on four points, the
+/// capsule on two and the square pyramid on four; pyramid and capsule are the closest pair apart.
 #[test]
-fn small_worlds() {
-    let c = example("world.c").build().run(NO_ARGS).stdout;
-    let cpp = example("world.cpp").build().run(NO_ARGS).stdout;
+fn world_examples() {
+    let [c, cpp] =
+        ["examples/world.c", "examples/world.cpp"].map(|path| strict(program(path)).build().run(NO_ARGS).stdout);
     assert_eq!(c, cpp);
     if !harness::under_tool() && !harness::emulated() {
         assert_eq!(c, rust_world());

@@ -1,14 +1,12 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* `pos` against the centre of pressure by integration: bodies of a quarter metre that tilt, slide,
- * stand, tip, roll and turn on a floor, a millimetre and a hundredth of one deep, in steps so small
- * that what jumps shows.
+/* Compares `pos` with the center of pressure by integration: bodies of a quarter metre that tilt, slide,
+ * tip, roll and turn on a floor, 1 mm and 0.01 mm deep, in steps so small that a discontinuity shows. And random
+ * pairs at depths of 1 to 30 % of the smaller body's radius: prints the errors of `pos` and of the middle of the
+ * witness points.
  *
- * Besides, pairs at random, pushed apart to depths of 1 to 30 % of the smaller body's reach.
- *
- *   pressure [range | N]   range prints the errors of the random pairs, and of the middle of the
- *                          witness points, in % of that reach; N: one sweep and depth in N */
+ *   pressure [N]   one sweep and depth in N */
 
 #include "tests/extension/pressure.h"
 
@@ -22,21 +20,20 @@ static const int single = sizeof(ccd_real_t) == sizeof(float);
 enum { STEPS = 64, COARSE = 24 };
 static const double HALF = 0.125;
 
-/* How a body stands at an angle: turned about `axis` by `before` (a quarter, an eighth of a turn),
- * then by the angle about `about`. */
+/* Poses of a body: turned about `axis` by `initial`, then about `sweep_axis` by the angle of the sweep. */
 typedef struct {
     const char *name;
     shape_t body;
-    double axis[3], before;
-    double about[3];
-    double rolls; /* degrees a step: the angle is in its symmetry, or it turns around all ways to stand */
-    double slide; /* over the floor's edge by so much along x, in place of the angle */
-    double rms, step; /* at most: metres, and metres beyond twice the truth's step */
+    double axis[3], initial;
+    double sweep_axis[3];
+    double roll; /* degrees a step, of a body that rolls or turns on the spot; 0: small angles */
+    double slide; /* metres along x, over the floor's edge, in place of the angle */
+    double max_rms, max_step; /* metres; steps beyond twice the exact one */
     int ground;
-    double lean; /* besides, in depths over its width */
+    double lean; /* slope, in depths over the body's width */
 } sweep_t;
 
-/* What it is on: a floor, a box as wide as itself, or a disc, neither of which it stands on the middle of. */
+/* The ground: a floor, or a box or disc as wide as the body, off its center. */
 enum { FLOOR, BOX, DISC };
 
 static double deg(double x) { return x * atan(1.0) / 45; }
@@ -47,8 +44,8 @@ static void rotate(const double rot[9], const double v[3], double out[3])
         out[i] = rot[3 * i] * v[0] + rot[3 * i + 1] * v[1] + rot[3 * i + 2] * v[2];
 }
 
-/* Body and floor at an angle, `depth` deep. */
-static void pose(const sweep_t *s, double angle, double depth, shape_t *body, shape_t *floor)
+/* Places body and ground at an angle, `depth` deep. */
+static void set_pose(const sweep_t *s, double angle, double depth, shape_t *body, shape_t *floor)
 {
     const ccd_vec3_t down = {{0, 0, -1}};
     ccd_vec3_t low;
@@ -56,19 +53,17 @@ static void pose(const sweep_t *s, double angle, double depth, shape_t *body, sh
     *floor = s->ground == DISC ? shape_cylinder(0.15, 0.5) : s->ground == BOX ? shape_box(HALF, HALF, 0.5) : shape_box(1, 1, 0.5);
     shape_move(floor, s->slide != 0 ? -0.9 : 0.05, 0.03, -0.5);
     *body = s->body;
-    rotation_about(s->axis[0], s->axis[1], s->axis[2], s->before, first);
-    rotation_about(s->about[0], s->about[1], s->about[2], s->slide != 0 ? deg(-0.2) : angle, then);
+    rotation_about(s->axis[0], s->axis[1], s->axis[2], s->initial, first);
+    rotation_about(s->sweep_axis[0], s->sweep_axis[1], s->sweep_axis[2], s->slide != 0 ? deg(-0.2) : angle, then);
     rotation_times(then, first, all);
-    /* About no axis of anything. */
     rotation_about(cos(0.35), sin(0.35), 0, s->lean * depth / (2 * HALF), lean);
-    memcpy(then, all, sizeof then);
-    rotation_times(lean, then, all);
-    shape_turn(body, all);
+    rotation_times(lean, all, then);
+    shape_turn(body, then);
     shape_support(body, &down, &low);
     shape_move(body, s->slide != 0 ? angle : 0, 0, -depth - (double)low.v[2]);
 }
 
-static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, ccd_vec3_t *dir, ccd_vec3_t *pos)
+static int query(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, ccd_vec3_t *dir, ccd_vec3_t *pos)
 {
     ccd_real_t depth;
     ccd_penetration_t p;
@@ -84,8 +79,8 @@ static int ask(int call, const shape_t *a, const shape_t *b, ccd_warm_t *warm, c
     return code;
 }
 
-/* A place that both share: the lowest corner may be beside the ground. */
-static void shared_place(const shape_t *body, const shape_t *floor, double place[3])
+/* Finds a point in both: the lowest corner may be beside the ground. */
+static void common_point(const shape_t *body, const shape_t *floor, double place[3])
 {
     ccd_penetration_t p;
     ccd_t ccd = shape_query();
@@ -94,9 +89,9 @@ static void shared_place(const shape_t *body, const shape_t *floor, double place
         place[i] = ((double)p.point1.v[i] + (double)p.point2.v[i]) / 2;
 }
 
-typedef struct { double square, worst, jump, truth; int poses; } errors_t;
+typedef struct { double square, worst, step, exact_step; int poses; } errors_t;
 
-static double apart(const double p[3], const double q[3])
+static double distance(const double p[3], const double q[3])
 {
     return sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) + (p[2] - q[2]) * (p[2] - q[2]));
 }
@@ -104,24 +99,24 @@ static double apart(const double p[3], const double q[3])
 static const int CALLS[] = {CALL_MPR, CALL_MPR_WARM, CALL_GJK, CALL_PENETRATION, CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN};
 enum { CALL_COUNT = sizeof CALLS / sizeof *CALLS };
 
-/* The angles: fine ones around the special place, then coarse ones. */
+/* Returns the k-th angle, small ones first, or slide; -1 after the last of a roll or slide. */
 static double angle_at(const sweep_t *s, double depth, int k)
 {
     const double width = 2 * HALF, step = depth / (8 * width);
     if (s->slide != 0)
         return k < STEPS ? s->slide * k / STEPS : -1;
-    if (s->rolls > 0)
-        return k < STEPS ? deg(s->rolls * k) : -1;
+    if (s->roll > 0)
+        return k < STEPS ? deg(s->roll * k) : -1;
     if (k < STEPS)
         return (k - STEPS / 2 + 0.5) * step;
     return deg(0.05 * (k - STEPS) * (k - STEPS) + 0.05);
 }
 
-/* The poses of a sweep at a depth, and where their centre of pressure is. */
+/* Pose of a sweep and its exact center of pressure. */
 typedef struct {
     shape_t body, floor;
     double truth[3];
-    int overlap; /* at the place looked at */
+    int overlap;
 } pose_t;
 static pose_t poses[STEPS + COARSE];
 static int pose_count;
@@ -135,16 +130,16 @@ static void set_poses(const sweep_t *s, double depth)
         pose_t *p = &poses[pose_count];
         double place[3];
         ccd_vec3_t low;
-        if (angle < 0 && (s->slide != 0 || s->rolls > 0))
+        if (angle < 0 && (s->slide != 0 || s->roll > 0))
             break;
-        pose(s, angle, depth, &p->body, &p->floor);
+        set_pose(s, angle, depth, &p->body, &p->floor);
         shape_support(&p->body, &down, &low);
         for (int i = 0; i < 3; i++)
             place[i] = (double)low.v[i];
-        if (s->slide != 0) /* the deepest place may be beyond the edge */
+        if (s->slide != 0) /* the lowest point may be beyond the edge */
             place[0] = fmin(place[0], 0.1 - 1e-9);
         if (s->ground != FLOOR)
-            shared_place(&p->body, &p->floor, place);
+            common_point(&p->body, &p->floor, place);
         p->overlap = pressure_centre(&p->body, &p->floor, up, place, p->truth) > 0;
     }
 }
@@ -164,7 +159,7 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
             continue;
         shape_turn_by(&a, world, 0, 0, 0);
         shape_turn_by(&b, world, 0, 0, 0);
-        int code = ask(call, &a, &b, call == CALL_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
+        int code = query(call, &a, &b, call == CALL_MPR_WARM && k % 2 == 0 ? &warm : NULL, &dir, &pos);
         if (code != 0 && code != CCD_LIMIT) {
             CHECK(0, "%s, pose %d: code %d", s->name, k, code);
             continue;
@@ -175,13 +170,13 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
         for (int i = 0; i < 3; i++)
             p[i] = (double)pos.v[i] - along * (double)dir.v[i]; /* across dir */
         CHECK(fabs(along) <= 1.5 * depth, "%s, pose %d: %g along dir", s->name, k, along);
-        off = apart(p, t);
+        off = distance(p, t);
         e.square += off * off;
         e.worst = fmax(e.worst, off);
         e.poses++;
         if (k > 0 && k < STEPS) {
-            e.jump = fmax(e.jump, apart(p, last) - 2 * apart(t, last_truth));
-            e.truth = fmax(e.truth, apart(t, last_truth));
+            e.step = fmax(e.step, distance(p, last) - 2 * distance(t, last_truth));
+            e.exact_step = fmax(e.exact_step, distance(t, last_truth));
         }
         memcpy(last, p, sizeof last);
         memcpy(last_truth, t, sizeof last_truth);
@@ -189,45 +184,37 @@ static errors_t sweep(const sweep_t *s, double depth, int call, const double wor
     return e;
 }
 
-static double next_random(unsigned long long *state)
-{
-    *state = *state * 6364136223846793005ULL + 1442695040888963407ULL;
-    return (double)(*state >> 11) * (2.0 / 9007199254740992.0) - 1;
-}
-
-/* Kinds of pairs at random, and by how much pos may be off at most, in % of the reach (root mean square). */
+/* Kinds of random pairs, and the largest error of pos, in % of the radius (root mean square). */
 static const struct {
     const char *name;
-    int first, last; /* shapes, -1: flat boxes */
-    double most[4];  /* by RANGE */
+    int first, last;     /* shapes, -1: flat boxes */
+    double max_error[4]; /* by RANGE */
 } KINDS[] = {{"boxes", SHAPE_BOX, SHAPE_BOX, {2, 3, 8, 22}}, {"plates", -1, -1, {2, 3, 8, 25}}, {"round", SHAPE_CAPSULE, SHAPE_ELLIPSOID, {3, 5, 8, 18}}};
 static const double RANGE[] = {0.01, 0.03, 0.1, 0.3};
 
-static shape_t random_body(unsigned long long *state, int kind)
+static shape_t random_body(int kind)
 {
-    double p[3], q[4], rot[9];
-    for (int i = 0; i < 3; i++)
-        p[i] = 0.3 + 0.2 * next_random(state);
-    for (int i = 0; i < 4; i++)
-        q[i] = next_random(state);
-    shape_t s = kind < 0 ? shape_box(p[0], p[1], 0.1 * p[2]) : shape_make(kind, kind == SHAPE_CAPSULE ? 0.5 * p[0] : p[0], p[1], p[2]);
+    const double x = uniform(0.1, 0.5), y = uniform(0.1, 0.5), z = uniform(0.1, 0.5);
+    double q[4], rot[9];
+    shape_t s = kind < 0 ? shape_box(x, y, 0.1 * z) : shape_make(kind, kind == SHAPE_CAPSULE ? 0.5 * x : x, y, z);
+    uniform_rotation(q);
     rotation_quaternion(q[0], q[1], q[2], q[3], rot);
     shape_turn(&s, rot);
     return s;
 }
 
-/* The errors of pos [0] and of the middle of the witness points [1] at a depth, root mean square. */
+/* Computes the errors of pos [0] and of the middle of the witness points [1] at a depth, root mean square. */
 static void range_errors(unsigned kind, double share, double error[2])
 {
-    unsigned long long state = 9;
     double square[2] = {0, 0};
     int n = 0;
+    uniform_seed(9);
     for (int k = 0; k < 400; k++) {
         const int kinds = KINDS[kind].last - KINDS[kind].first + 1;
-        shape_t a = random_body(&state, KINDS[kind].first + k % kinds), b = random_body(&state, KINDS[kind].first + k / kinds % kinds);
+        shape_t a = random_body(KINDS[kind].first + k % kinds), b = random_body(KINDS[kind].first + k / kinds % kinds);
         ccd_penetration_t p;
         double normal[3], middle[3], pos[3], truth[3], reach, move;
-        const double x = 0.3 * next_random(&state), y = 0.3 * next_random(&state), z = 0.3 * next_random(&state);
+        const double x = uniform(-0.3, 0.3), y = uniform(-0.3, 0.3), z = uniform(-0.3, 0.3);
         shape_move(&b, x, y, z);
         ccd_t ccd = shape_query();
         ccd.max_iterations = 500;
@@ -254,7 +241,7 @@ static void range_errors(unsigned kind, double share, double error[2])
                 along += normal[j] * (at[j] - truth[j]);
             for (int j = 0; j < 3; j++)
                 at[j] -= along * normal[j];
-            square[i] += pow(apart(at, truth) / reach, 2);
+            square[i] += pow(distance(at, truth) / reach, 2);
         }
         n++;
     }
@@ -264,17 +251,15 @@ static void range_errors(unsigned kind, double share, double error[2])
 
 static unsigned every = 1;
 
-static void range(int prints)
+static void random_pairs(void)
 {
     for (unsigned k = 0; k < sizeof KINDS / sizeof *KINDS; k++)
         for (unsigned i = 0; i < sizeof RANGE / sizeof *RANGE; i += every) {
             double error[2];
             range_errors(k, RANGE[i], error);
-            if (prints)
-                printf("%s, depth %g %% of the reach: pos %.2f %%, middle of the witness points %.2f %%\n", KINDS[k].name, 100 * RANGE[i],
-                       error[0], error[1]);
-            CHECK(error[0] <= KINDS[k].most[i] && error[0] < error[1], "%s, depth %g of the reach: pos %.2f %%, middle %.2f %%", KINDS[k].name,
-                  RANGE[i], error[0], error[1]);
+            printf("%s, depth %g %% of the radius: pos %.2f %%, middle of the witness points %.2f %%\n", KINDS[k].name,
+                   100 * RANGE[i], error[0], error[1]);
+            CHECK(error[0] <= KINDS[k].max_error[i] && error[0] < error[1], "%s, depth %g of the radius", KINDS[k].name, RANGE[i]);
         }
 }
 
@@ -285,12 +270,12 @@ int main(int argc, char **argv)
     static const double X[3] = {1, 0, 0}, Y[3] = {0, 1, 0}, Z[3] = {0, 0, 1}, XY[3] = {1, 0.6, 0};
 #define FLAT 3e-3, 1e-3
 #define ROUND 7e-3, 5e-3
-/* Its radius falls along the line that it lies on, and so does what is taken off for it: where the
- * deepest place jumps along the line, pos follows by a part. */
+/* Its radius falls along the line that it lies on, and so does the correction for it: where the
+ * deepest point jumps along the line, pos follows in part. */
 #define TAPERED 15e-3, 50e-3
 #define SWEEP(name, body, axis, before, about, rolls, slide, ...) \
     {name, body, {axis[0], axis[1], axis[2]}, before, {about[0], about[1], about[2]}, rolls, slide, __VA_ARGS__, FLOOR, 0}
-/* Turned on the spot through all its ways to stand, leaning. */
+/* Turned on the spot, leaning. */
 #define TURN(name, body, ground, lean, ...) {name, body, {0, 0, 1}, 0, {0, 0, 1}, 1.43, 0, __VA_ARGS__, ground, lean}
     const shape_t box = shape_box(HALF, HALF, HALF), brick = shape_box(HALF, 0.08, 0.06);
     const shape_t can = shape_cylinder(0.09, HALF), rod = shape_capsule(0.05, HALF), hat = shape_cone(HALF, HALF);
@@ -323,16 +308,8 @@ int main(int argc, char **argv)
     unsigned i;
     rotation_about(0, 0, 1, 0, world[0]);
     rotation_quaternion(0.3, -0.5, 0.7, 0.2, world[1]);
-    if (argc > 1 && strcmp(argv[1], "range") == 0) {
-        range(1);
-        return checks_end();
-    }
     every = argc > 1 ? (unsigned)atoi(argv[1]) : every;
-    if (!every) {
-        fprintf(stderr, "usage: %s [range | N]\n", argv[0]);
-        return 2;
-    }
-    range(0);
+    random_pairs();
     for (i = 0; i < sizeof all / sizeof *all; i += every) {
         for (int d = 0; d < (single ? 1 : 2); d++) {
             const double depth = d ? 1e-5 : 1e-3;
@@ -342,10 +319,10 @@ int main(int argc, char **argv)
                     const errors_t e = sweep(&all[i], depth, CALLS[c], world[w]);
                     const double rms = sqrt(e.square / e.poses);
                     if (c == 0)
-                        printf("%-35s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the truth's %7.3f (%.3f)\n",
-                               all[i].name, depth, w, 1e3 * rms, 1e3 * e.worst, 1e3 * e.jump, 1e3 * e.truth);
-                    CHECK(rms <= all[i].rms, "%s, %g deep, world %d, call %d: rms %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * rms);
-                    CHECK(e.jump <= all[i].step, "%s, %g deep, world %d, call %d: a step of %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * e.jump);
+                        printf("%-35s %g m deep, world %d: rms %6.3f mm, worst %7.3f, step beyond twice the exact one %7.3f (%.3f)\n",
+                               all[i].name, depth, w, 1e3 * rms, 1e3 * e.worst, 1e3 * e.step, 1e3 * e.exact_step);
+                    CHECK(rms <= all[i].max_rms, "%s, %g deep, world %d, call %d: rms %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * rms);
+                    CHECK(e.step <= all[i].max_step, "%s, %g deep, world %d, call %d: a step of %.3g mm", all[i].name, depth, w, CALLS[c], 1e3 * e.step);
                 }
         }
     }

@@ -1,24 +1,24 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The centre of pressure of two overlapping shapes, by integration: the centroid of the volume
- * that they share. Truth for `pos`. Knows every shape but the polytope. */
+/* Computes the center of pressure of two overlapping shapes, the exact `pos`: the centroid of their common
+ * volume, by integration. For every shape but the polytope. */
 
 #ifndef TESTS_PRESSURE_H
 #define TESTS_PRESSURE_H
 
 #include "harness/shapes.h"
 
-/* From where to where along a line; empty where from > to. */
+/* Interval on a line; empty where from > to. */
 typedef struct { double from, to; } span_t;
 
-static inline span_t span_both(span_t a, span_t b)
+static inline span_t span_intersection(span_t a, span_t b)
 {
     const span_t s = {fmax(a.from, b.from), fmin(a.to, b.to)};
     return s;
 }
 
-/* Where p + t d is no farther than half from the middle: one coordinate of a box. */
+/* Solves |p + t d| <= half: one coordinate of a box. */
 static inline span_t span_slab(double p, double d, double half)
 {
     span_t s = {-INFINITY, INFINITY};
@@ -33,12 +33,12 @@ static inline span_t span_slab(double p, double d, double half)
     return s;
 }
 
-/* Where w0 x^2 + w1 y^2 + w2 (z - at)^2 <= most: in a ball or an ellipsoid, around z where w2 is 0, below
- * the apex of a cone where it is negative. */
-static inline span_t span_quadric(const double p[3], const double d[3], const double w[3], double at, double most)
+/* Solves w0 x^2 + w1 y^2 + w2 (z - center)^2 <= limit on the line p + t d: an ellipsoid, a cylinder where w2 is 0,
+ * the lower nappe of a cone where w2 is negative. */
+static inline span_t span_quadric(const double p[3], const double d[3], const double w[3], double center, double limit)
 {
-    const double q[3] = {p[0], p[1], p[2] - at};
-    double a = 0, b = 0, c = -most, root;
+    const double q[3] = {p[0], p[1], p[2] - center};
+    double a = 0, b = 0, c = -limit, root;
     span_t s = {-INFINITY, INFINITY};
     for (int i = 0; i < 3; i++) {
         a += w[i] * d[i] * d[i];
@@ -53,7 +53,7 @@ static inline span_t span_quadric(const double p[3], const double d[3], const do
         s.from = (-b - sqrt(root)) / a;
         s.to = (-b + sqrt(root)) / a;
     } else if (w[2] < 0 && root >= 0) {
-        /* Inside beyond both roots, of which the lower nappe has one. */
+        /* Inside is beyond both roots; one is on the lower nappe. */
         const double one = (-b - sqrt(root)) / a, two = (-b + sqrt(root)) / a;
         if (d[2] > 0)
             s.to = fmin(one, two);
@@ -63,12 +63,12 @@ static inline span_t span_quadric(const double p[3], const double d[3], const do
     return s;
 }
 
-/* The part of the line p + t d that is in the shape. */
+/* Returns the part of the line p + t d in the shape. */
 static inline span_t pressure_span(const shape_t *s, const double p[3], const double d[3])
 {
-    static const double ball[3] = {1, 1, 1}, tube[3] = {1, 1, 0};
+    static const double ball[3] = {1, 1, 1}, cylinder[3] = {1, 1, 0};
     const double p0 = (double)s->p[0], p1 = (double)s->p[1], r2 = p0 * p0;
-    const double tapered[3] = {1, 1, -r2 / (4 * p1 * p1)};
+    const double cone[3] = {1, 1, -r2 / (4 * p1 * p1)};
     double q[3], e[3], w[3];
     const span_t none = {1, 0};
     for (int i = 0; i < 3; i++) {
@@ -83,10 +83,10 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
     switch (s->type) {
     case SHAPE_SPHERE: return span_quadric(q, e, ball, 0, r2);
     case SHAPE_BOX:
-        return span_both(span_both(span_slab(q[0], e[0], p0), span_slab(q[1], e[1], p1)), span_slab(q[2], e[2], (double)s->p[2]));
-    case SHAPE_CYLINDER: return span_both(span_quadric(q, e, tube, 0, r2), slab);
+        return span_intersection(span_intersection(span_slab(q[0], e[0], p0), span_slab(q[1], e[1], p1)), span_slab(q[2], e[2], (double)s->p[2]));
+    case SHAPE_CYLINDER: return span_intersection(span_quadric(q, e, cylinder, 0, r2), slab);
     case SHAPE_CAPSULE: {
-        const span_t part[3] = {span_both(span_quadric(q, e, tube, 0, r2), slab), span_quadric(q, e, ball, p1, r2),
+        const span_t part[3] = {span_intersection(span_quadric(q, e, cylinder, 0, r2), slab), span_quadric(q, e, ball, p1, r2),
                                 span_quadric(q, e, ball, -p1, r2)};
         span_t all = {INFINITY, -INFINITY};
         for (int i = 0; i < 3; i++)
@@ -96,30 +96,31 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
             }
         return all;
     }
-    case SHAPE_CONE: return span_both(span_quadric(q, e, tapered, p1, 0), slab);
+    case SHAPE_CONE: return span_intersection(span_quadric(q, e, cone, p1, 0), slab);
     case SHAPE_ELLIPSOID: return span_quadric(q, e, w, 0, 1);
     case SHAPE_POLYTOPE: break;
     }
     return none;
 }
 
-/* The shared chord above a place of the plane through `at` that u and v span. */
+/* Integral over the plane of u and v through `origin`, of the chords along n in both shapes. */
 typedef struct {
     const shape_t *a, *b;
-    double at[3], u[3], v[3], n[3];
+    double origin[3], u[3], v[3], n[3];
     double volume, moment[3];
-    double reach; /* the largest distance from `at` met */
+    double radius; /* the largest distance of the region's edge from `origin` */
 } pressure_t;
 
+/* Returns the common chord at the point (x, y) of the plane. */
 static inline span_t pressure_chord(const pressure_t *c, double x, double y)
 {
     double p[3];
     for (int i = 0; i < 3; i++)
-        p[i] = c->at[i] + x * c->u[i] + y * c->v[i];
-    return span_both(pressure_span(c->a, p, c->n), pressure_span(c->b, p, c->n));
+        p[i] = c->origin[i] + x * c->u[i] + y * c->v[i];
+    return span_intersection(pressure_span(c->a, p, c->n), pressure_span(c->b, p, c->n));
 }
 
-/* How far from `at` the shared region reaches that way. The local depth is concave. */
+/* Finds the edge of the region in the direction `angle` by bisection: the length of a chord is concave. */
 static inline void pressure_edge(pressure_t *c, double angle, double out[2])
 {
     const double x = cos(angle), y = sin(angle);
@@ -134,31 +135,34 @@ static inline void pressure_edge(pressure_t *c, double angle, double out[2])
     }
     out[0] = in * x;
     out[1] = in * y;
-    c->reach = fmax(c->reach, in);
+    c->radius = fmax(c->radius, in);
 }
 
+/* Adds the integral over the triangle of `origin`, p and q, by Gauss points. */
 static inline void pressure_triangle(pressure_t *c, const double p[2], const double q[2])
 {
-    static const double at[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
-                                    {0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692}};
+    /* abscissas and weights */
+    static const double gauss[2][4] = {{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262},
+                                       {0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692}};
     const double area = p[0] * q[1] - p[1] * q[0];
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++) {
-            const double t = at[0][i], s = at[0][j];
+            const double t = gauss[0][i], s = gauss[0][j];
             const double x = t * (p[0] + s * (q[0] - p[0])), y = t * (p[1] + s * (q[1] - p[1]));
             const span_t chord = pressure_chord(c, x, y);
-            const double w = area * t * at[1][i] * at[1][j] * fmax(chord.to - chord.from, 0);
+            const double w = area * t * gauss[1][i] * gauss[1][j] * fmax(chord.to - chord.from, 0);
             if (!(w > 0))
                 continue;
             c->volume += w;
             for (int k = 0; k < 3; k++)
-                c->moment[k] += w * (c->at[k] + x * c->u[k] + y * c->v[k] + 0.5 * (chord.from + chord.to) * c->n[k]);
+                c->moment[k] += w * (c->origin[k] + x * c->u[k] + y * c->v[k] + 0.5 * (chord.from + chord.to) * c->n[k]);
         }
 }
 
+/* Adds the integral over a sector, split until its arc is short. */
 static inline void pressure_sector(pressure_t *c, double from, const double p[2], double to, const double q[2])
 {
-    if (hypot(q[0] - p[0], q[1] - p[1]) > 0.03 * c->reach && to - from > 1e-8) {
+    if (hypot(q[0] - p[0], q[1] - p[1]) > 0.03 * c->radius && to - from > 1e-8) {
         double middle[2];
         const double angle = 0.5 * (from + to);
         pressure_edge(c, angle, middle);
@@ -169,8 +173,8 @@ static inline void pressure_sector(pressure_t *c, double from, const double p[2]
     }
 }
 
-/* The centroid of the volume that a and b share, seen along the unit vector n from a place of it.
- * Returns the volume, 0 where they share none there. */
+/* Computes the centroid of the common volume of a and b, by chords along the unit vector n, from a point `place` in
+ * it. Returns the volume, 0 where it is empty. */
 static inline double pressure_centre(const shape_t *a, const shape_t *b, const double n[3], const double place[3],
                                      double centre[3])
 {
@@ -183,14 +187,12 @@ static inline double pressure_centre(const shape_t *a, const shape_t *b, const d
     c.a = a;
     c.b = b;
     memcpy(c.n, n, sizeof c.n);
-    memcpy(c.at, place, sizeof c.at);
+    memcpy(c.origin, place, sizeof c.origin);
     for (int i = 0; i < 3; i++)
         c.u[i] = (i == least) - n[least] * n[i];
-    {
-        const double l = sqrt(c.u[0] * c.u[0] + c.u[1] * c.u[1] + c.u[2] * c.u[2]);
-        for (int i = 0; i < 3; i++)
-            c.u[i] /= l;
-    }
+    const double length = sqrt(c.u[0] * c.u[0] + c.u[1] * c.u[1] + c.u[2] * c.u[2]);
+    for (int i = 0; i < 3; i++)
+        c.u[i] /= length;
     for (int i = 0; i < 3; i++)
         c.v[i] = n[(i + 1) % 3] * c.u[(i + 2) % 3] - n[(i + 2) % 3] * c.u[(i + 1) % 3];
     for (int i = 0; i < SECTORS; i++)

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* ccdCheck: every kind of fault by its flag, and none where nothing is wrong. (How large what is found
- * is, and finer faults: src/minkowski/validate.rs.) */
+/* Checks that ccdCheck reports each kind of fault by its flag, and none of a valid support function. (Finer faults and
+ * their sizes: src/minkowski/validate.rs.) */
 
 #include "tests/contract/check.h"
 #include "harness/this_library.h"
@@ -10,74 +10,72 @@
 
 #include <math.h>
 
-/* A ball of radius 0.5 with a fault. */
-typedef struct {
-    enum { FINE, AGAINST, NOT_A_NUMBER, TURNED, TIRED } fault;
-    ccd_vec3_t at, center;
-    unsigned long asked;
-} odd_t;
+typedef enum { NO_FAULT, WRONG_SIGN, NOT_FINITE, NOT_TURNED_BACK, CHANGING } fault_t;
 
-static void odd_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+/* Ball of radius 0.5 with a fault. */
+typedef struct {
+    fault_t fault;
+    ccd_real_t x, center; /* along the x axis */
+    unsigned long calls;
+} faulty_t;
+
+static void faulty_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
-    odd_t *s = (odd_t *)obj;
-    const ccd_real_t half[3] = {(ccd_real_t).5, 1, 2};
-    s->asked++;
+    faulty_t *s = (faulty_t *)obj;
+    const ccd_real_t half[3] = {CCD_REAL(0.5), 1, 2};
+    ccd_real_t radius = CCD_REAL(0.5);
+    if (s->fault == WRONG_SIGN)
+        radius = -radius;
+    if (s->fault == CHANGING && ++s->calls > 200)
+        radius = CCD_REAL(0.4);
     for (int i = 0; i < 3; i++) {
-        const int other = (i + 1) % 3;
-        switch (s->fault) {
-        case AGAINST: out->v[i] = s->at.v[i] - dir->v[i] / 2; break;
-        case NOT_A_NUMBER: out->v[i] = dir->v[2] > (ccd_real_t).9 ? (ccd_real_t)NAN : dir->v[i]; break;
-        /* a box whose direction is turned to its frame and whose point is not turned back */
-        case TURNED: out->v[i] = dir->v[other] < 0 ? -half[other] : half[other]; break;
-        case TIRED: out->v[i] = s->at.v[i] + dir->v[i] * (s->asked > 200 ? (ccd_real_t).4 : (ccd_real_t).5); break;
-        default: out->v[i] = s->at.v[i] + dir->v[i] / 2; break;
-        }
+        out->v[i] = (i == 0 ? s->x : 0) + radius * dir->v[i];
+        if (s->fault == NOT_FINITE && dir->v[2] > CCD_REAL(0.9))
+            out->v[i] = (ccd_real_t)NAN;
+        /* a box: the direction is turned to its frame, the point is not turned back */
+        if (s->fault == NOT_TURNED_BACK)
+            out->v[i] = dir->v[(i + 1) % 3] < 0 ? -half[(i + 1) % 3] : half[(i + 1) % 3];
     }
 }
 
-static void odd_center(const void *obj, ccd_vec3_t *out) { *out = ((const odd_t *)obj)->center; }
+static void faulty_center(const void *obj, ccd_vec3_t *out) { ccdVec3Set(out, ((const faulty_t *)obj)->center, 0, 0); }
 
-static void faults_have_names(void)
+static void check_faults(void)
 {
     const struct {
-        int fault, at, centre, flags;
-        const char *what;
+        faulty_t object;
+        int flags;
+        const char *name;
     } rows[] = {
-        {AGAINST, 3, 3, CCD_CHECK_OPPOSITE, "a wrong sign"},
-        {NOT_A_NUMBER, 0, 0, CCD_CHECK_NOT_FINITE, "not finite"},
-        {TURNED, 0, 0, CCD_CHECK_CONTRADICTS, "not turned back"},
-        {FINE, 3, 0, CCD_CHECK_CENTER_OUTSIDE, "a centre in the body's own frame"},
-        {TIRED, 3, 3, CCD_CHECK_CHANGES, "worse from call to call"},
+        {{WRONG_SIGN, 3, 3, 0}, CCD_CHECK_OPPOSITE, "a wrong sign"},
+        {{NOT_FINITE, 0, 0, 0}, CCD_CHECK_NOT_FINITE, "not finite"},
+        {{NOT_TURNED_BACK, 0, 0, 0}, CCD_CHECK_CONTRADICTS, "not turned back"},
+        {{NO_FAULT, 3, 0, 0}, CCD_CHECK_CENTER_OUTSIDE, "a center in the body's own frame"},
+        {{CHANGING, 3, 3, 0}, CCD_CHECK_CHANGES, "changes between calls"},
     };
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        odd_t s;
-        ccd_check_t found;
-        memset(&s, 0, sizeof s);
-        s.fault = rows[i].fault;
-        s.at.v[0] = (ccd_real_t)rows[i].at;
-        s.center.v[0] = (ccd_real_t)rows[i].centre;
-        int flags = OURS(ccdCheck)(&s, odd_support, odd_center, &found);
-        CHECK(rows[i].fault == TIRED ? (flags & CCD_CHECK_CHANGES) != 0 : flags == rows[i].flags, "%s: %d", rows[i].what, flags);
-        CHECK((flags == 0) == (OURS(ccdCheck)(&s, odd_support, odd_center, NULL) == 0) || rows[i].fault == TIRED, "%s, no out",
-              rows[i].what);
-    }
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        for (int has_output = 0; has_output < 2; has_output++) {
+            faulty_t s = rows[i].object;
+            ccd_check_t found;
+            const int flags = OURS(ccdCheck)(&s, faulty_support, faulty_center, has_output ? &found : NULL);
+            CHECK(s.fault == CHANGING ? (flags & rows[i].flags) != 0 : flags == rows[i].flags, "%s: %d", rows[i].name, flags);
+        }
 }
 
-static void without_what_is_needed(void)
+static void check_missing_callbacks(void)
 {
-    odd_t s;
+    faulty_t s = {NO_FAULT, 0, 0, 0};
     ccd_check_t found, before;
-    memset(&s, 0, sizeof s);
     memset(&found, 7, sizeof found);
     before = found;
-    CHECK(OURS(ccdCheck)(&s, NULL, odd_center, &found) == CCD_BAD_INPUT, "no support function");
+    CHECK(OURS(ccdCheck)(&s, NULL, faulty_center, &found) == CCD_BAD_INPUT, "no support function");
     CHECK(same_bits(&found, &before, sizeof found), "written");
-    CHECK(OURS(ccdCheck)(&s, odd_support, NULL, &found) == CCD_CHECK_CENTER_MISSING, "no centre");
+    CHECK(OURS(ccdCheck)(&s, faulty_support, NULL, &found) == CCD_CHECK_CENTER_MISSING, "no center");
     CHECK(found.size > .99 && found.size <= 1.000001, "size %g", (double)found.size);
 }
 
-/* Every shape of the tests, anywhere and of any size. */
-static void nothing_is_wrong(void)
+/* Checks every shape of the tests in several sizes. */
+static void check_valid_shapes(void)
 {
     static const ccd_real_t points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, (ccd_real_t).5, (ccd_real_t).5, (ccd_real_t).5};
     for (int type = 0; type < SHAPE_TYPES; type++)
@@ -99,8 +97,8 @@ static void nothing_is_wrong(void)
 
 int main(void)
 {
-    faults_have_names();
-    without_what_is_needed();
-    nothing_is_wrong();
+    check_faults();
+    check_missing_callbacks();
+    check_valid_shapes();
     return checks_end();
 }

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* ccd.hpp: the same bits as the C calls it wraps, shapes of any vector type with and
- * without a centre, exceptions thrown by a shape, states copied as values. */
+/* Checks ccd.hpp: the same bits as the C calls that it wraps, shapes of any vector type with and
+ * without a center, exceptions thrown by a shape, states copied as values. */
 
 #include <ccd/ccd.hpp>
 
@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-/* A shape of the C tests behind the interface of the wrapper. */
+/* Shape of the C tests with the interface of the wrapper. */
 struct Wrapped {
     shape_t shape;
 
@@ -31,8 +31,8 @@ struct Wrapped {
     }
 };
 
-/* The same without a centre, with a foreign vector type. */
-struct NoCentre {
+/* The same without a center, with another vector type. */
+struct WithoutCenter {
     Wrapped of;
 
     std::array<ccd_real_t, 3> support(const ccd::Vec3 &dir) const
@@ -42,33 +42,33 @@ struct NoCentre {
     }
 };
 
-/* The same with its centre in the other spelling. */
-struct American {
+/* The same with the other spelling of center. */
+struct AmericanSpelling {
     Wrapped of;
 
     ccd_vec3_t support(const ccd::Vec3 &dir) const { return of.support(dir); }
     ccd_vec3_t center() const { return of.centre(); }
 };
 
-struct TooFar : std::runtime_error {
+struct LimitReached : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/* A ball that refuses to answer more than so many questions. */
-struct Tired {
+/* Ball that throws after `left` calls. */
+struct ThrowingBall {
     ccd_real_t x;
     mutable int left;
 
     ccd::Vec3 support(const ccd::Vec3 &d) const
     {
         if (left-- == 0)
-            throw TooFar("support");
+            throw LimitReached("support");
         return {x + d.x, d.y, d.z};
     }
     ccd::Vec3 centre() const
     {
         if (left-- == 0)
-            throw TooFar("centre");
+            throw LimitReached("centre");
         return {x, 0, 0};
     }
 };
@@ -86,19 +86,20 @@ static void check_same(const char *name, const ccd::Penetration &p, int code, co
           "%s", name);
 }
 
-static Wrapped anywhere()
+static Wrapped random_wrapped()
 {
     Wrapped w{random_shape()};
     shape_move(&w.shape, uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
     return w;
 }
 
-/* Every query, with and without a state, against the C call with the same callbacks. */
-static void same_as_c()
+/* Compares every query, with and without a state, with the C call with the same callbacks. */
+static void results_are_those_of_c()
 {
+    const unsigned all = CCD_WANT_ALL;
     int hits = 0, misses = 0;
     for (int i = 0; i < 500; i++) {
-        const Wrapped a = anywhere(), b = anywhere();
+        const Wrapped a = random_wrapped(), b = random_wrapped();
         const shape_t *o1 = &a.shape, *o2 = &b.shape;
         const ccd::Settings settings{CCD_REAL(1e-5)};
         const ccd::Vec3 dir{1, 2, -2};
@@ -113,23 +114,20 @@ static void same_as_c()
             ccd_penetration_t out;
             ccd_real_t depth;
             ccd_vec3_t d, pos;
-            check_same("penetration", ccd::penetration(a, b, settings, &warm),
-                       ccdPenetration(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
-            const ccd::Penetration local = ccd::penetration_local(a, b, settings, &warm);
-            check_same("local", local, ccdPenetrationLocal(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
-            CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after a local query");
-            (local ? hits : misses)++;
+            check_same("global", ccd::penetration(a, b, settings, &warm), ccdPenetration(o1, o2, &c, &c_warm, all, &out), out);
+            check_same("local", ccd::penetration_local(a, b, settings, &warm),
+                       ccdPenetrationLocal(o1, o2, &c, &c_warm, all, &out), out);
             check_same("incremental", ccd::penetration_incremental(a, b, settings, &warm),
-                       ccdPenetrationIncremental(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+                       ccdPenetrationIncremental(o1, o2, &c, &c_warm, all, &out), out);
             check_same("proven", ccd::penetration_proven(a, b, settings, &warm),
-                       ccdPenetrationProven(o1, o2, &c, &c_warm, CCD_WANT_ALL, &out), out);
+                       ccdPenetrationProven(o1, o2, &c, &c_warm, all, &out), out);
             check_same("along", ccd::penetration_along(a, b, dir, settings, &warm),
-                       ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out), out);
+                       ccdPenetrationAlong(o1, o2, &c, &c_dir, &c_warm, all, &out), out);
             check_same("planar", ccd::penetration_planar(a, b, dir, settings, &warm),
-                       ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, CCD_WANT_ALL, &out), out);
+                       ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, all, &out), out);
 
             ccd_distance_t away;
-            int code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5), &c_warm, CCD_WANT_ALL, &away);
+            int code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5), &c_warm, all, &away);
             const ccd::Distance distance = ccd::signed_distance(a, b, settings, {CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5)}, &warm);
             CHECK(int(distance.status) == code && distance, "distance");
             CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
@@ -142,6 +140,7 @@ static void same_as_c()
             const ccd::Penetration mpr = ccd::mpr_penetration(a, b, settings, &warm);
             CHECK(int(mpr.status) == code, "mpr");
             CHECK(!mpr || (mpr.depth == depth && same(mpr.dir, d) && same(mpr.pos, pos)), "mpr");
+            (mpr ? hits : misses)++;
             CHECK(ccd::intersect(a, b, &warm) == (ccdIntersect(o1, o2, &c, &c_warm) == 1), "intersect");
             CHECK(ccd::mpr_intersect(a, b, &warm) == (ccdMPRIntersectWarm(o1, o2, &c, &c_warm) == 1), "mpr_intersect");
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "the state after all queries");
@@ -173,80 +172,80 @@ static void same_as_c()
 
         c.center1 = c.center2 = nullptr;
         ccd_penetration_t out;
-        const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
-        check_same("without centres", ccd::penetration_local(NoCentre{a}, NoCentre{b}, settings), without, out);
+        const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, all, &out);
+        check_same("without centres", ccd::penetration_local(WithoutCenter{a}, WithoutCenter{b}, settings), without, out);
         c.center1 = c.center2 = shape_center;
-        const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
-        check_same("center", ccd::penetration_local(American{a}, American{b}, settings), spelt, out);
-        check_same("center and centre", ccd::penetration_local(a, American{b}, settings), spelt, out);
-        CHECK(ccd::mpr_intersect(American{a}, b) == ccd::mpr_intersect(a, b), "center");
+        const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, all, &out);
+        check_same("center", ccd::penetration_local(AmericanSpelling{a}, AmericanSpelling{b}, settings), spelt, out);
+        check_same("center and centre", ccd::penetration_local(a, AmericanSpelling{b}, settings), spelt, out);
+        CHECK(ccd::mpr_intersect(AmericanSpelling{a}, b) == ccd::mpr_intersect(a, b), "center");
         c.center1 = c.center2 = nullptr;
-        ccdPenetrationLocal(o1, o2, &c, nullptr, CCD_WANT_ALL, &out);
-        check_same("one centre", ccd::penetration_local(NoCentre{a}, b, settings), without, out);
-        CHECK(ccd::gjk_intersect(NoCentre{a}, NoCentre{b}) == ccd::gjk_intersect(a, b), "a foreign vector");
-        CHECK(ccd::intersect(NoCentre{a}, b) == (ccdIntersect(o1, o2, &c, nullptr) == 1), "intersect without a centre");
+        ccdPenetrationLocal(o1, o2, &c, nullptr, all, &out);
+        check_same("one centre", ccd::penetration_local(WithoutCenter{a}, b, settings), without, out);
+        CHECK(ccd::gjk_intersect(WithoutCenter{a}, WithoutCenter{b}) == ccd::gjk_intersect(a, b), "a foreign vector");
+        CHECK(ccd::intersect(WithoutCenter{a}, b) == (ccdIntersect(o1, o2, &c, nullptr) == 1), "intersect without a centre");
     }
     CHECK(hits > 100 && misses > 100, "%d hits, %d misses", hits, misses);
 }
 
-/* Whatever call it is that a shape refuses, the exception arrives as it was thrown. */
+/* Checks that an exception of a shape, from each of its calls in turn, arrives as it was thrown. */
 template <class Query>
 static void throws_through(const char *name, Query query)
 {
     int caught = 0;
     for (int left = 0;; left++) {
-        const Tired a{0, left}, b{CCD_REAL(1.5), -1};
+        const ThrowingBall a{0, left}, b{CCD_REAL(1.5), -1};
         try {
             query(a, b);
             break;
-        } catch (const TooFar &e) {
+        } catch (const LimitReached &e) {
             CHECK(e.what() == std::string("support") || e.what() == std::string("centre"), "%s", name);
             caught++;
         }
     }
-    CHECK(caught > 0, "%s asks the shape", name);
+    CHECK(caught > 0, "%s calls the shape", name);
 }
 
 static void exceptions()
 {
-    throws_through("intersect", [](auto &a, auto &b) { ccd::intersect(a, b); });
-    throws_through("penetration", [](auto &a, auto &b) { ccd::penetration(a, b); });
-    throws_through("mpr_intersect", [](auto &a, auto &b) { ccd::mpr_intersect(a, b); });
-    throws_through("gjk_intersect", [](auto &a, auto &b) { ccd::gjk_intersect(a, b); });
-    throws_through("mpr", [](auto &a, auto &b) { ccd::mpr_penetration(a, b); });
-    throws_through("gjk", [](auto &a, auto &b) { ccd::gjk_penetration(a, b); });
-    throws_through("gjk_separate", [](auto &a, auto &b) { ccd::gjk_separate(a, b); });
-    throws_through("local", [](auto &a, auto &b) { ccd::penetration_local(a, b); });
-    throws_through("incremental", [](auto &a, auto &b) { ccd::penetration_incremental(a, b); });
-    throws_through("proven", [](auto &a, auto &b) { ccd::penetration_proven(a, b); });
-    throws_through("along", [](auto &a, auto &b) { ccd::penetration_along(a, b, {0, 1, 0}); });
+#define THROWS(...) throws_through(#__VA_ARGS__, [](auto &a, auto &b) { ccd::__VA_ARGS__; })
+    THROWS(intersect(a, b));
+    THROWS(mpr_intersect(a, b));
+    THROWS(gjk_intersect(a, b));
+    THROWS(mpr_penetration(a, b));
+    THROWS(gjk_penetration(a, b));
+    THROWS(gjk_separate(a, b));
+    THROWS(penetration(a, b));
+    THROWS(penetration_local(a, b));
+    THROWS(penetration_incremental(a, b));
+    THROWS(penetration_proven(a, b));
+    THROWS(penetration_along(a, b, {0, 1, 0}));
+    THROWS(penetration_planar(a, b, {0, 0, 1}));
+    THROWS(signed_distance(a, b));
     throws_through("contacts", [](auto &a, auto &b) {
         std::array<ccd::Contact, 2> out;
         ccd::contacts(a, b, {0, 0, 1}, 0, out);
     });
-    throws_through("distance", [](auto &a, auto &b) { ccd::signed_distance(a, b); });
-    throws_through("planar", [](auto &a, auto &b) { ccd::penetration_planar(a, b, {0, 0, 1}); });
 
-    /* A query that was left has not touched the state. */
-    const Tired ball{0, -1};
+    /* An exception leaves the state unchanged. */
+    const ThrowingBall ball{0, -1};
     ccd::Warm warm = ccd::Warm::guess({1, 0, 0});
-    const ccd::Warm before = warm;
+    ccd::Warm before = warm;
     try {
-        ccd::penetration_local(ball, Tired{CCD_REAL(1.5), 2}, {}, &warm);
+        ccd::penetration_local(ball, ThrowingBall{CCD_REAL(1.5), 2}, {}, &warm);
         CHECK(false, "nothing thrown");
-    } catch (const TooFar &) {
+    } catch (const LimitReached &) {
     }
-    ccd::Warm copy = before;
-    CHECK(same_bits(warm.get(), copy.get(), sizeof(ccd_warm_t)), "the state after an exception");
+    CHECK(same_bits(warm.get(), before.get(), sizeof(ccd_warm_t)), "the state after an exception");
 }
 
-static void values()
+static void statuses_and_settings()
 {
-    const Tired a{0, -1}, b{CCD_REAL(1.5), -1}, far_off{9, -1};
+    const ThrowingBall a{0, -1}, b{CCD_REAL(1.5), -1}, far_off{9, -1};
     const ccd_real_t nan = CCD_REAL(0.0) / CCD_REAL(0.0);
     CHECK(!ccd::penetration_local(a, far_off), "apart");
     CHECK(ccd::penetration_local(a, far_off).status == ccd::Status::miss, "apart");
-    CHECK(ccd::penetration_local(a, b, {nan}).status == ccd::Status::bad_input, "NaN tolerance");
+    CHECK(ccd::penetration_local(a, b, {nan}).status == ccd::Status::bad_input, "a NaN tolerance");
     CHECK(ccd::penetration_along(a, b, {0, 0, 0}).status == ccd::Status::bad_input, "no direction");
     std::array<ccd::Contact, 2> room;
     std::array<ccd::Contact, 0> none;
@@ -256,15 +255,15 @@ static void values()
     CHECK(ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 4}).status == ccd::Status::bad_input, "an unknown flag");
     CHECK(ccd::penetration_local(a, b, {CCD_REAL(1e-5), 0}).status == ccd::Status::limit, "no iterations");
 
-    /* What is not wanted is zero, and pos is the same alone. */
+    /* Results that are not requested are zero. */
     const auto all = ccd::penetration(a, b), nothing = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 0});
     const auto pos = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, ccd::want_pos});
     const ccd_vec3_t zero3{{0, 0, 0}};
-    CHECK(nothing && nothing.depth == all.depth && same(nothing.pos, zero3) && same(nothing.point1, zero3), "nothing wanted");
+    CHECK(nothing && nothing.depth == all.depth && same(nothing.pos, zero3) && same(nothing.point1, zero3), "nothing requested");
     CHECK(same(pos.pos, all.pos) && same(pos.point2, zero3) && !same(all.point2, zero3), "pos alone");
     CHECK(std::string(ccd::implementation()).rfind("warmccd ", 0) == 0, "%s", ccd::implementation());
 
-    /* The guess leads: between two shapes on one spot any way out is as good. */
+    /* Of two equal shapes in one place every direction separates equally: the guess decides. */
     ccd::Warm warm = ccd::Warm::guess({0, -5, 0});
     const auto hit = ccd::penetration_local(a, a, {CCD_REAL(1e-5)}, &warm);
     CHECK(hit && hit.dir.y < CCD_REAL(-0.9), "dir %g %g %g", double(hit.dir.x), double(hit.dir.y), double(hit.dir.z));
@@ -275,29 +274,28 @@ static void values()
     CHECK(same_bits(zero.get(), cold.get(), sizeof(ccd_warm_t)), "a guess of zero is cold");
 }
 
-/* A wrong sign, a centre in another frame; and nothing wrong. */
-struct Against {
+struct WrongSign {
     ccd::Vec3 support(const ccd::Vec3 &d) const { return {-d.x, -d.y, -d.z}; }
 };
-struct Elsewhere : Against {
+struct CenterOutside {
     ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x + 5, d.y, d.z}; }
     ccd::Vec3 center() const { return {}; }
 };
 
-static void checked()
+static void support_checks()
 {
-    const auto against = ccd::check(Against{}), elsewhere = ccd::check(Elsewhere{}), fine = ccd::check(Tired{3, -1});
-    CHECK(against.faults == CCD_CHECK_OPPOSITE, "%u", against.faults);
-    CHECK(elsewhere && elsewhere.faults == CCD_CHECK_CENTER_OUTSIDE && elsewhere.center_outside > 3.9, "%u %g",
-          elsewhere.faults, double(elsewhere.center_outside));
-    CHECK(!fine && fine.size > 1.9 && fine.center_outside < 0, "%u %g", fine.faults, double(fine.size));
+    const auto sign = ccd::check(WrongSign{}), center = ccd::check(CenterOutside{}), valid = ccd::check(ThrowingBall{3, -1});
+    CHECK(sign.faults == CCD_CHECK_OPPOSITE, "%u", sign.faults);
+    CHECK(center && center.faults == CCD_CHECK_CENTER_OUTSIDE && center.center_outside > 3.9, "%u %g", center.faults,
+          double(center.center_outside));
+    CHECK(!valid && valid.size > 1.9 && valid.center_outside < 0, "%u %g", valid.faults, double(valid.size));
 }
 
 int main()
 {
-    same_as_c();
+    results_are_those_of_c();
     exceptions();
-    values();
-    checked();
+    statuses_and_settings();
+    support_checks();
     return checks_end();
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Installs the library with CMake and uses it from throw-away projects, in
-//! every way its users do: find_package, add_subdirectory, FetchContent and
-//! pkg-config, shared and static, in the precision of this test binary. What is
-//! installed is small, the same wherever it is built, and names whose work is in it.
+//! Installs the library with CMake and uses it from throw-away projects by find_package,
+//! add_subdirectory, FetchContent and pkg-config, shared and static, in the precision of this test
+//! binary. Checks the size, reproducibility and notices of the installed files, and runs the programs
+//! of README.md and include/README.md.
 
 #[path = "../../harness/mod.rs"]
 mod harness;
@@ -15,9 +15,9 @@ use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::{Mutex, OnceLock};
+use std::sync::OnceLock;
 
-/// An empty directory of this name, for one test.
+/// Makes an empty directory of this name.
 fn fresh(name: &str) -> PathBuf {
     let dir = output_dir().join("packaging").join(Precision::CURRENT.name()).join(name);
     if dir.exists() {
@@ -27,18 +27,18 @@ fn fresh(name: &str) -> PathBuf {
     dir
 }
 
-/// Runs a tool to a good end; what it writes.
-fn ran(mut tool: Command, args: &[&dyn AsRef<OsStr>]) -> String {
+/// Runs a tool, which must succeed, and returns its standard output.
+fn run(mut tool: Command, args: &[&dyn AsRef<OsStr>]) -> String {
     tool.args(args);
     let name = tool.get_program().to_string_lossy().into_owned();
     must_succeed(&mut tool, &name).stdout
 }
 
 fn cmake(args: &[&dyn AsRef<OsStr>]) {
-    ran(Command::new("cmake"), args);
+    run(Command::new("cmake"), args);
 }
 
-/// Configures a folder in another.
+/// Returns the command that configures `source` in the folder `build`.
 fn configure(source: &Path, build: &Path) -> Command {
     let mut cmake = Command::new("cmake");
     cmake.arg("-S").arg(source).arg("-B").arg(build);
@@ -60,59 +60,27 @@ fn precision_option() -> OsString {
     define("ENABLE_DOUBLE_PRECISION", double)
 }
 
-/// How cargo builds the library.
-#[derive(Clone, Copy)]
-enum Cargo {
-    /// As it is installed, at one place for all tests of this file.
-    Release,
-    /// Not optimised, at another: for one more way to find and link the library, where what
-    /// it computes is not looked at.
-    Quick,
+/// Returns the options of every build of the library. All share one folder of cargo's, in which
+/// crates are compiled once for both precisions.
+fn library_options() -> [OsString; 2] {
+    [precision_option(), define("CCD_CARGO_TARGET_DIR", output_dir().join("packaging/cargo"))]
 }
 
-impl Cargo {
-    /// What configures a build of the library.
-    fn options(self) -> [OsString; 2] {
-        let name = match self {
-            Cargo::Release => "cargo",
-            Cargo::Quick => "cargo-quick",
-        };
-        // Crates are compiled once for both precisions.
-        let dir = output_dir().join("packaging").join(name);
-        [precision_option(), define("CCD_CARGO_TARGET_DIR", dir)]
-    }
-
-    /// Builds what is configured.
-    fn build(self, tree: &Path) {
-        let mut make = Command::new("cmake");
-        make.arg("--build").arg(tree);
-        // Sources of two places are built there, one after the other.
-        static QUICK: Mutex<()> = Mutex::new(());
-        let mut _one = None;
-        if let Cargo::Quick = self {
-            _one = Some(QUICK.lock());
-            make.env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0");
-            make.env("CARGO_PROFILE_RELEASE_DEBUG", "false");
-        }
-        must_succeed(&mut make, "cmake");
-    }
-}
-
-fn build_library(build: &Path, prefix: &Path, cargo: Cargo, options: &[OsString]) {
+fn build_library(build: &Path, prefix: &Path, options: &[OsString]) {
     let mut configure = configure(&root().join("cmake"), build);
     configure.arg(define("CMAKE_INSTALL_PREFIX", prefix));
-    must_succeed(configure.args(cargo.options()).args(options), "cmake");
-    cargo.build(build);
+    must_succeed(configure.args(library_options()).args(options), "cmake");
+    cmake(&[&"--build", &build]);
 }
 
-/// The library installed under a prefix, then moved: nothing in it may
-/// remember where it was built or first lay.
+/// Installs the library under a prefix, then moves the prefix and removes the build tree: no file may
+/// refer to either. Returns the new prefix.
 fn installed_and_moved() -> &'static Path {
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
         let dir = fresh("installed");
         let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
-        build_library(&build, &first, Cargo::Release, &[]);
+        build_library(&build, &first, &[]);
         cmake(&[&"--install", &build]);
         fs::remove_dir_all(&build).expect("the build tree can be removed");
         fs::rename(&first, &prefix).expect("the prefix can be moved");
@@ -120,19 +88,20 @@ fn installed_and_moved() -> &'static Path {
     })
 }
 
-/// Configures and builds the consumer; what else CMake is to know.
-fn consumer(name: &str, way: &str, cargo: Cargo, options: &[OsString]) -> PathBuf {
+/// Configures and builds the consumer in the folder `name`, which it returns. `options` override the
+/// usual ones.
+fn consumer(name: &str, way: &str, options: &[OsString]) -> PathBuf {
     let build = fresh(name);
     let mut configure = configure(&root().join("c-tests/tests/packaging/consumer"), &build);
     configure.args([define("WAY", way), define("REPOSITORY", root())]);
-    must_succeed(configure.args(cargo.options()).args(options), "cmake");
-    cargo.build(&build);
+    must_succeed(configure.args(library_options()).args(options), "cmake");
+    cmake(&[&"--build", &build]);
     build
 }
 
-/// The program runs, and on this repository's library: on the shared one under
-/// `shared_under`, or on the static one.
-fn runs_on_ours(program: &Path, shared_under: Option<&Path>) {
+/// Checks that the program runs on this repository's library: the shared one under `shared_under`, or
+/// the static one.
+fn assert_runs_on_ours(program: &Path, shared_under: Option<&Path>) {
     let name = program.file_name().expect("a program").to_string_lossy();
     let program = Executable::made_elsewhere(&name, program);
     let loaded = program.loaded_ccd();
@@ -144,63 +113,62 @@ fn runs_on_ours(program: &Path, shared_under: Option<&Path>) {
     assert_eq!(program.run([""; 0]).stdout, expected);
 }
 
-/// Of the consumer's programs: those on the shared library, and the one on the archive.
-fn all_run_on_ours(programs: &Path, shared_under: &Path, names: &[&str]) {
+/// Checks the consumer's programs `names`, which use the shared library, and `static`.
+fn assert_all_run_on_ours(programs: &Path, shared_under: &Path, names: &[&str]) {
     for name in names {
-        runs_on_ours(&programs.join(name), Some(shared_under));
+        assert_runs_on_ours(&programs.join(name), Some(shared_under));
     }
-    runs_on_ours(&programs.join("static"), None);
+    assert_runs_on_ours(&programs.join("static"), None);
 }
 
 #[test]
 fn find_package() {
     let prefix = installed_and_moved();
-    let there = [define("CMAKE_PREFIX_PATH", prefix)];
-    let build = consumer("find_package", "find_package", Cargo::Release, &there);
-    all_run_on_ours(&build, prefix, &["plain", "namespaced", "variables"]);
+    let build = consumer("find_package", "find_package", &[define("CMAKE_PREFIX_PATH", prefix)]);
+    assert_all_run_on_ours(&build, prefix, &["plain", "namespaced", "variables"]);
 }
 
-/// As a part of another project, which installs this library only if it asks to. Ninja and a
-/// generator of several configurations build what make does.
+/// Checks that a project which includes the library's sources builds them with make, Ninja and a
+/// generator of several configurations, and installs the library only with CCD_INSTALL.
 #[test]
 fn add_subdirectory_and_fetch_content() {
     for (name, way, option, programs) in [
-        ("part", "add_subdirectory", None, ""),
-        ("asked", "add_subdirectory", Some("-DCCD_INSTALL=ON"), ""),
-        ("fetched", "FetchContent", None, ""),
+        ("subdirectory", "add_subdirectory", None, ""),
+        ("install", "add_subdirectory", Some("-DCCD_INSTALL=ON"), ""),
+        ("FetchContent", "FetchContent", None, ""),
         ("Ninja", "add_subdirectory", Some("-GNinja"), ""),
-        ("several", "add_subdirectory", Some("-GNinja Multi-Config"), "Debug"),
+        ("multi-config", "add_subdirectory", Some("-GNinja Multi-Config"), "Debug"),
     ] {
         let prefix = fresh("parent").join(name);
         let mut options = vec![define("CMAKE_INSTALL_PREFIX", &prefix)];
         options.extend(option.map(OsString::from));
-        let build = consumer(name, way, Cargo::Release, &options);
-        all_run_on_ours(&build.join(programs), &build, &["plain", "namespaced"]);
+        let build = consumer(name, way, &options);
+        assert_all_run_on_ours(&build.join(programs), &build, &["plain", "namespaced"]);
         let cache = fs::read_to_string(build.join("CMakeCache.txt")).expect("CMake's cache");
-        assert!(!cache.contains("BUILD_SHARED_LIBS"), "set for its parent");
+        assert!(!cache.contains("BUILD_SHARED_LIBS"), "set in the parent project");
         if programs.is_empty() {
             cmake(&[&"--install", &build]);
             assert!(prefix.join("bin/plain").is_file());
-            assert_eq!(prefix.join("include").exists(), name == "asked");
+            assert_eq!(prefix.join("include").exists(), name == "install");
         }
         // The same in both precisions.
-        if Precision::CURRENT == Precision::Single && name == "fetched" {
+        if Precision::CURRENT == Precision::Single && name == "FetchContent" {
             break;
         }
     }
 }
 
-/// By FetchContent from a repository, of its branch as cmake/README.md says it.
+/// Fetches the library by FetchContent from a git repository, at the branch that cmake/README.md names.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn git_tag() {
+fn fetch_content_from_git() {
     if !root().join(".git").exists() {
         println!("skipped: not a git repository");
         return;
     }
     let git = |dir: &Path, args: &[&dyn AsRef<OsStr>]| {
         let args = [&[&"-C" as &dyn AsRef<OsStr>, &dir], args].concat();
-        ran(Command::new("git"), &args).trim().to_owned()
+        run(Command::new("git"), &args).trim().to_owned()
     };
     let page = page("cmake/README.md");
     let tag = page
@@ -208,8 +176,8 @@ fn git_tag() {
         .and_then(|(_, rest)| rest.split([' ', ')']).next())
         .expect("the page names a branch");
     assert_eq!(tag, "main");
-    // The files as they are now, copied into a repository of their own: the time stamps of the
-    // index and the name of whoever works here do not matter.
+    // The tracked files as they are now, committed to a new repository: the time stamps of the
+    // index and the user's git identity do not matter.
     let upstream = fresh("upstream");
     let branch = format!("--initial-branch={tag}");
     git(&upstream, &[&"init", &"--quiet", &branch]);
@@ -217,7 +185,7 @@ fn git_tag() {
     for file in files.split_terminator('\0') {
         let to = upstream.join(file);
         fs::create_dir_all(to.parent().expect("a directory")).expect("a directory can be made");
-        // One that is deleted and not committed is not there.
+        // A tracked file may be deleted in the working tree.
         if root().join(file).exists() {
             fs::copy(root().join(file), to).expect("a file can be copied");
         }
@@ -227,103 +195,98 @@ fn git_tag() {
     commit.arg("-C").arg(&upstream);
     commit.args(["-c", "user.name=Test", "-c", "user.email=test@localhost"]);
     commit.args(["commit", "--quiet", "--no-gpg-sign", "-m", "files"]);
-    ran(commit, &[]);
+    run(commit, &[]);
 
-    // Behind the consumer's own.
-    let options = [define("TAG", tag), define("REPOSITORY", upstream)];
-    let build = consumer("git", "git", Cargo::Quick, &options);
-    all_run_on_ours(&build, &build, &["plain", "namespaced"]);
+    // Cargo's folder is its own: sources of two places would replace each other's libraries.
+    let cargo = define("CCD_CARGO_TARGET_DIR", output_dir().join("packaging/cargo-git"));
+    let build = consumer("git", "git", &[define("TAG", tag), define("REPOSITORY", upstream), cargo]);
+    assert_all_run_on_ours(&build, &build, &["plain", "namespaced"]);
 }
 
-/// BUILD_SHARED_LIBS=OFF: `ccd` is the archive, in a build tree and installed.
+/// Checks that with BUILD_SHARED_LIBS=OFF `ccd` is the static library, in a build tree and installed.
 #[test]
-fn the_archive_alone_without_shared_libraries() {
-    let dir = fresh("static-alone");
+fn static_library_only() {
+    let dir = fresh("static-only");
     let (build, prefix) = (dir.join("build"), dir.join("prefix"));
-    let cargo = Cargo::Quick;
     let off = define("BUILD_SHARED_LIBS", "OFF");
-    build_library(&build, &prefix, cargo, std::slice::from_ref(&off));
+    build_library(&build, &prefix, std::slice::from_ref(&off));
     cmake(&[&"--install", &build]);
     find(&prefix, "libccd.a");
     assert!(!prefix.join("lib/libccd.so").exists());
     for (name, way, option) in [
         ("static-installed", "find_package", define("CMAKE_PREFIX_PATH", &prefix)),
-        ("static-part", "add_subdirectory", off),
+        ("static-subdirectory", "add_subdirectory", off),
     ] {
-        let build = consumer(name, way, cargo, &[option]);
+        let build = consumer(name, way, &[option]);
         for program in ["plain", "namespaced", "static"] {
-            runs_on_ours(&build.join(program), None);
+            assert_runs_on_ours(&build.join(program), None);
         }
     }
 }
 
-/// Writes a program that says one line.
-fn executable(path: &Path, line: &str) {
+/// Writes a shell script that prints one line.
+fn write_script(path: &Path, line: &str) {
     fs::write(path, format!("#!/bin/sh\necho '{line}'\n")).expect("a script");
     let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
     fs::set_permissions(path, mode).expect("a mode");
 }
 
-/// A Rust that is missing or too old is named when CMake configures.
+/// Checks that CMake reports a Rust that is missing, too old or prints no version.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn a_missing_or_old_rust_is_named() {
+fn cmake_reports_a_missing_or_old_rust() {
     let dir = fresh("rust");
-    let says = |name: &str, line: &str| {
-        let script = dir.join(name);
-        executable(&script, line);
+    let cargo_printing = |line: &str| {
+        let script = dir.join(line.split(' ').next_back().expect("a word"));
+        write_script(&script, line);
         define("CARGO", script)
     };
-    let oldest = env!("CARGO_PKG_RUST_VERSION");
     let missing = define("CARGO", "CARGO-NOTFOUND");
-    let (old, odd) = ("cargo 1.63.0", "no such toolchain");
-    for (name, option, expected) in [
-        ("missing", missing, "cargo is missing"),
-        ("old", says("old-cargo", old), "is Rust 1.63"),
-        ("odd", says("odd-cargo", odd), odd),
+    for (name, option, expected, names_a_package) in [
+        ("missing", missing, "cargo is missing", true),
+        ("old", cargo_printing("cargo 1.63.0"), "is Rust 1.63", true),
+        ("broken", cargo_printing("no such toolchain"), "no such toolchain", false),
     ] {
         let mut configure = configure(&root().join("cmake"), &dir.join(name));
-        // find_program finds nothing anywhere.
+        // find_program finds no other cargo.
         for place in ["CMAKE_SYSTEM_PATH", "SYSTEM_ENVIRONMENT_PATH"] {
             configure.arg(define(&format!("CMAKE_FIND_USE_{place}"), "OFF"));
         }
         configure.env("CARGO_HOME", &dir).env("HOME", &dir);
         configure.arg(option);
-        let said = configure.output().expect("cmake runs");
-        assert!(!said.status.success(), "{name}");
-        let said = String::from_utf8_lossy(&said.stderr);
-        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(said.contains(expected), "{name}: {said}");
-        if name != "odd" {
-            let sentence = format!("Rust {oldest} or later (Debian 12's or 13's rustc-web");
-            assert!(said.contains(&sentence), "{said}");
-        }
+        let output = configure.output().expect("cmake runs");
+        assert!(!output.status.success(), "{name}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(message.contains(expected), "{name}: {message}");
+        let advice = concat!("Rust ", env!("CARGO_PKG_RUST_VERSION"), " or later (Debian 12's or 13's rustc-web");
+        assert!(message.contains(advice) || !names_a_package, "{message}");
     }
 }
 
-/// setup.sh names a Rust that is too old, and Debian's packages of a newer one.
+/// Checks that setup.sh reports a Rust that is too old, and names Debian's packages of a newer one.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn setup_names_where_a_newer_rust_is() {
+fn setup_reports_an_old_rust() {
     let dir = fresh("old-rust");
     for tool in ["cargo", "rustc"] {
-        executable(&dir.join(tool), &format!("{tool} 1.63.0 (fd9c4297c 2022-07-01)"));
+        write_script(&dir.join(tool), &format!("{tool} 1.63.0 (fd9c4297c 2022-07-01)"));
     }
     let path = std::env::var("PATH").expect("a path");
     for job in ["check", "main", "tests"] {
         let mut setup = Command::new("sh");
         setup.arg(root().join("c-tests/setup.sh")).arg(job);
         setup.env("PATH", format!("{}:{path}", dir.display()));
-        let said = setup.output().expect("a shell runs");
-        assert_eq!(said.status.code(), Some(1), "{job}");
-        let said = String::from_utf8_lossy(&said.stderr);
-        assert!(said.contains("cargo is 1.63.0, too old: Rust 1."), "{said}");
-        assert!(said.contains("13's rustc-web and cargo-web"), "{said}");
+        let output = setup.output().expect("a shell runs");
+        assert_eq!(output.status.code(), Some(1), "{job}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains("cargo is 1.63.0, too old: Rust 1."), "{message}");
+        assert!(message.contains("13's rustc-web and cargo-web"), "{message}");
     }
 }
 
-/// The source archive builds without a network, and gives the same bytes wherever it
-/// is unpacked. (By its name the first to start: it takes longest.)
+/// Checks that the source archive builds without a network, to the same bytes in every folder.
+/// (Its name makes it the first to start: it takes longest.)
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn a_build_of_the_source_archive_is_offline_and_reproducible() {
@@ -333,32 +296,30 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
     }
     let dir = fresh("source");
     let source = root().join("cmake/packages/source.sh");
-    let archive = ran(Command::new("sh"), &[&source, &dir]);
+    let archive = run(Command::new("sh"), &[&source, &dir]);
     let name = concat!("warmccd-", env!("CARGO_PKG_VERSION"), ".tar.xz");
     assert_eq!(Path::new(archive.trim()), dir.join(name));
-    let libraries: Vec<[Vec<u8>; 2]> = ["a", "another/place"]
-        .into_iter()
-        .map(|place| {
-            let place = dir.join(place);
-            fs::create_dir_all(&place).expect("a directory");
-            let (archive, strip) = (archive.trim(), "--strip-components=1");
-            ran(Command::new("tar"), &[&"-xf", &archive, &"-C", &place, &strip]);
-            let build = place.join("build");
-            ran(configure(&place.join("cmake"), &build), &[&precision_option()]);
-            let mut make = Command::new("cmake");
-            // No crate that was fetched before, and no way to fetch one.
-            make.env("CARGO_HOME", place.join("cargo-home"));
-            make.env("CARGO_NET_OFFLINE", "true");
-            ran(make, &[&"--build", &build]);
-            ["libccd.so.2.0", "libccd.a"].map(|name| fs::read(build.join("lib").join(name)).expect("a library"))
-        })
-        .collect();
-    for (name, i) in [("libccd.so.2.0", 0), ("libccd.a", 1)] {
+    let names = ["libccd.so.2.0", "libccd.a"];
+    let libraries = ["a", "another/place"].map(|place| {
+        let place = dir.join(place);
+        fs::create_dir_all(&place).expect("a directory");
+        let (archive, strip) = (archive.trim(), "--strip-components=1");
+        run(Command::new("tar"), &[&"-xf", &archive, &"-C", &place, &strip]);
+        let build = place.join("build");
+        run(configure(&place.join("cmake"), &build), &[&precision_option()]);
+        let mut make = Command::new("cmake");
+        // No cached crate, and no way to fetch one.
+        make.env("CARGO_HOME", place.join("cargo-home"));
+        make.env("CARGO_NET_OFFLINE", "true");
+        run(make, &[&"--build", &build]);
+        names.map(|name| fs::read(build.join("lib").join(name)).expect("a library"))
+    });
+    for (i, name) in names.iter().enumerate() {
         assert!(libraries[0][i] == libraries[1][i], "{name} differs");
     }
 }
 
-/// The notices that are installed name each crate that is compiled in.
+/// Checks that the installed notices name each crate that is compiled in.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn notices_name_every_crate() {
@@ -374,7 +335,7 @@ fn notices_name_every_crate() {
         .collect();
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(root()).args(["tree", "--offline", "--prefix=none"]);
-    let tree = ran(cargo, &[&"--edges=normal,no-proc-macro", &"--format={p} {l}"]);
+    let tree = run(cargo, &[&"--edges=normal,no-proc-macro", &"--format={p} {l}"]);
     let lines = tree.lines().filter(|line| !line.starts_with("warmccd "));
     let other = lines.clone().find(|line| !line.contains("Apache-2.0"));
     assert_eq!(other, None, "another licence");
@@ -382,38 +343,38 @@ fn notices_name_every_crate() {
     assert_eq!(named, compiled.collect());
 }
 
-/// What is installed, as CMake makes it, carries no debug information and is small; and what
-/// `cargo build --release` makes. (The aim is 430,000; each solver stands once for every room
-/// that it works in.) Of the archive our own objects count: the rest is Rust's standard library,
-/// of 10 to 20 MB as it was built.
+/// Checks that the installed libraries are small and carry no debug information, and that
+/// `cargo build --release` makes a small one. (The aim is 430,000; each solver is compiled once for
+/// every capacity.) Of the archive only this crate's objects count: the rest is Rust's standard
+/// library, of 10 to 20 MB.
 #[test]
-fn sizes_of_the_libraries() {
+fn libraries_are_small() {
     let prefix = installed_and_moved();
     let [shared, archive] = ["libccd.so.2.0", "libccd.a"].map(|name| find(prefix, name));
     let bare = fresh("stripped").join("libccd.so");
     let built = harness::library(Precision::CURRENT).dir.join("libccd.so");
-    ran(harness::binutils("strip"), &[&"-o", &bare, &built]);
+    run(harness::binutils("strip"), &[&"-o", &bare, &built]);
     for file in [&shared, &bare] {
         assert_small(&file.to_string_lossy(), size(file), 680_000);
     }
     let own = size_of_own_objects(&archive);
     assert_small("our own objects in libccd.a", own, 750_000);
     for file in [shared, archive] {
-        let sections = ran(Command::new("readelf"), &[&"--wide", &"--sections", &file]);
+        let sections = run(Command::new("readelf"), &[&"--wide", &"--sections", &file]);
         assert!(sections.contains(".text"), "{file:?}");
         assert!(!sections.contains(".debug_"), "{file:?}");
     }
 }
 
-/// In bytes.
+/// Checks a size in bytes.
 fn assert_small(name: &str, size: u64, most: u64) {
     println!("{name}: {size} bytes, at most {most}");
     assert!(size <= most, "{name}: {size} bytes");
 }
 
-/// Sums up the members that rustc made of this crate, which their names begin with.
+/// Sums up the archive's members of this crate, whose names begin with it.
 fn size_of_own_objects(archive: &Path) -> u64 {
-    let members = ran(harness::binutils("ar"), &[&"tv", &archive]);
+    let members = run(harness::binutils("ar"), &[&"tv", &archive]);
     let sizes = members.lines().filter_map(|line| {
         // mode, owner, size, date, name
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -421,7 +382,7 @@ fn size_of_own_objects(archive: &Path) -> u64 {
         own.then(|| words[2].parse::<u64>().expect("a size"))
     });
     let size = sizes.sum();
-    assert!(size > 0, "none is ours:\n{members}");
+    assert!(size > 0, "no member of this crate:\n{members}");
     size
 }
 
@@ -429,10 +390,10 @@ fn size(path: &Path) -> u64 {
     fs::metadata(path).expect("a file").len()
 }
 
-/// What the archive adds to a program that calls one query: it is without Rust's panic messages
-/// and backtraces as long as no function of the library can panic: 300 KB.
+/// Checks how much the archive adds to a program with one query: without Rust's panic messages and
+/// backtraces, of 300 KB, as long as no function of the library can panic.
 #[test]
-fn a_program_s_growth() {
+fn static_link_adds_little() {
     let prefix = installed_and_moved();
     let archive = find(prefix, "libccd.a");
     let programs = fresh("sizes");
@@ -443,7 +404,7 @@ fn a_program_s_growth() {
         let mut cc = c_compiler();
         cc.arg("-I").arg(prefix.join("include")).arg(&source);
         cc.args(libraries).args(["-Wl,--gc-sections", "-s"]);
-        ran(cc, &[&"-o", &path]);
+        run(cc, &[&"-o", &path]);
         size(&path)
     };
     let call = "#include <ccd/ccd.h>
@@ -463,52 +424,51 @@ fn pkg_config() {
     let programs = fresh("pkg-config");
     let archive = find(prefix, "libccd.a");
     let libdir = archive.parent().expect("a directory");
-    let ask = |args: &[&str]| -> Vec<String> {
-        let mut ask = Command::new("pkg-config");
-        ask.env("PKG_CONFIG_PATH", libdir.join("pkgconfig"));
-        let said = must_succeed(ask.args(args).arg("ccd"), "pkg-config");
-        // A shell takes the words apart: blanks within a path are escaped.
-        let mut split = Command::new("sh");
-        split.arg("-c").arg(format!("printf '%s\\n' {}", said.stdout.trim()));
-        must_succeed(&mut split, "sh").stdout.lines().map(String::from).collect()
+    let pkg_config = |args: &[&str]| -> Vec<String> {
+        let mut command = Command::new("pkg-config");
+        command.env("PKG_CONFIG_PATH", libdir.join("pkgconfig"));
+        let flags = must_succeed(command.args(args).arg("ccd"), "pkg-config").stdout;
+        // A shell splits the flags: blanks within a path are escaped.
+        let split = format!("printf '%s\\n' {}", flags.trim());
+        run(Command::new("sh"), &[&"-c", &split]).lines().map(String::from).collect()
     };
-    assert_eq!(ask(&["--modversion"]), ["2.0"]);
+    assert_eq!(pkg_config(&["--modversion"]), ["2.0"]);
     let compile = |name: &str, flags: &[String]| {
         let program = programs.join(name);
         let mut cc = c_compiler();
         cc.arg(root().join("c-tests/tests/packaging/consumer/main.c")).args(flags);
-        ran(cc, &[&"-o", &program]);
+        run(cc, &[&"-o", &program]);
         program
     };
 
-    let mut shared = ask(&["--cflags", "--libs"]);
+    let mut shared = pkg_config(&["--cflags", "--libs"]);
     shared.push(format!("-Wl,-rpath,{}", libdir.display()));
-    runs_on_ours(&compile("shared", &shared), Some(prefix));
+    assert_runs_on_ours(&compile("shared", &shared), Some(prefix));
 
-    // libccd alone from its archive, the rest shared.
-    let mut one = ask(&["--static", "--cflags", "--libs"]);
+    // Only libccd static.
+    let mut one = pkg_config(&["--static", "--cflags", "--libs"]);
     for flag in one.iter_mut().filter(|flag| *flag == "-lccd") {
         *flag = "-l:libccd.a".to_owned();
     }
-    runs_on_ours(&compile("one-static", &one), None);
+    assert_runs_on_ours(&compile("one-static", &one), None);
 
     // Everything static: the C library and the unwinder too.
-    let mut all = ask(&["--static", "--cflags", "--libs"]);
+    let mut all = pkg_config(&["--static", "--cflags", "--libs"]);
     all.push("-static".to_owned());
-    runs_on_ours(&compile("all-static", &all), None);
+    assert_runs_on_ours(&compile("all-static", &all), None);
 }
 
-/// DESTDIR and multiarch, as a Debian package is made: the files lie where
-/// Debian's own libccd has them, and none names a directory of the build.
+/// Installs as a Debian package does, with DESTDIR and multiarch: the files are where Debian's own
+/// libccd has them, and none names a directory of the build.
 #[test]
 fn destdir_and_multiarch() {
     let dir = fresh("destdir");
     let (build, stage) = (dir.join("build"), dir.join("stage"));
-    build_library(&build, Path::new("/usr"), Cargo::Release, &[]);
+    build_library(&build, Path::new("/usr"), &[]);
     let mut install = Command::new("cmake");
     install.env("DESTDIR", &stage);
-    ran(install, &[&"--install", &build]);
-    let triplet = ran(c_compiler(), &[&"-print-multiarch"]);
+    run(install, &[&"--install", &build]);
+    let triplet = run(c_compiler(), &[&"-print-multiarch"]);
     let libdir = Path::new("usr/lib").join(triplet.trim());
     for file in [
         "libccd.a",
@@ -538,9 +498,9 @@ fn destdir_and_multiarch() {
     }
 }
 
-/// A program that asks for the other precision does not compile.
+/// Checks that a program for the other precision does not compile.
 #[test]
-fn the_other_precision_does_not_compile() {
+fn other_precision_does_not_compile() {
     let other = match Precision::CURRENT {
         Precision::Double => "-DCCD_SINGLE",
         Precision::Single => "-DCCD_DOUBLE",
@@ -556,18 +516,17 @@ fn the_other_precision_does_not_compile() {
     assert!(!compiles(&[other]));
 }
 
-/// The oldest Rust that Cargo.toml promises builds the library without a warning:
-/// rustup's, or the system's where it is that one (Debian 13).
+/// Checks that the oldest supported Rust builds the library without a warning: rustup's, or the
+/// system's where it has that version (Debian 13).
 #[test]
-fn oldest_rust() {
+fn oldest_rust_builds_the_library() {
     let version = env!("CARGO_PKG_RUST_VERSION");
-    let is_that_one = |command: &&[&str]| {
-        let said = Command::new(command[0]).args(&command[1..]).arg("--version").output();
-        let wanted = format!("cargo {version}.");
-        said.is_ok_and(|said| said.stdout.starts_with(wanted.as_bytes()))
+    let has_version = |command: &&[&str]| {
+        let output = Command::new(command[0]).args(&command[1..]).arg("--version").output();
+        output.is_ok_and(|output| output.stdout.starts_with(format!("cargo {version}.").as_bytes()))
     };
     let choices = [&["rustup", "run", version, "cargo"][..], &["/usr/bin/cargo"]];
-    let Some(cargo) = choices.into_iter().find(is_that_one) else {
+    let Some(cargo) = choices.into_iter().find(has_version) else {
         println!("skipped: no Rust {version} (rustup toolchain install {version})");
         return;
     };
@@ -580,7 +539,7 @@ fn oldest_rust() {
         .arg("--target-dir")
         .arg(output_dir().join("oldest-rust"))
         .env("RUSTFLAGS", "-D warnings");
-    // What cargo told this test about the compiler it was made with.
+    // Cargo set these for the compiler of this test.
     for variable in ["CARGO", "RUSTC", "RUSTUP_TOOLCHAIN", "CARGO_ENCODED_RUSTFLAGS"] {
         build.env_remove(variable);
     }
@@ -588,11 +547,10 @@ fn oldest_rust() {
         build.args(["--features", "single"]);
     }
     must_succeed(&mut build, "cargo");
-    // It sees fewer bounds than a newer one, and builds Debian's packages. The `contract` test
-    // of the same name tells where a panic stands.
-    let library = output_dir().join("oldest-rust/release/libccd.so");
-    let symbols = must_succeed(harness::binutils("nm").arg(library), "nm").stdout;
-    assert!(symbols.contains(" t "), "no local symbols: nothing to see");
+    // It proves fewer bounds than a newer one, and builds Debian's packages. The contract test
+    // `no_panic_is_linked` names the function that panics.
+    let symbols = run(harness::binutils("nm"), &[&output_dir().join("oldest-rust/release/libccd.so")]);
+    assert!(symbols.contains(" t "), "no local symbols");
     assert!(!symbols.contains("panicking"), "a panic is linked by Rust {version}");
 }
 
@@ -600,7 +558,7 @@ fn page(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a page")
 }
 
-/// A page's program in a language, in a file of its own below `place`.
+/// Extracts a page's program in a language into a file in the folder `place`.
 fn program_of(place: &str, name: &str, language: &str) -> PathBuf {
     let page = page(name);
     let program =
@@ -610,17 +568,17 @@ fn program_of(place: &str, name: &str, language: &str) -> PathBuf {
     source
 }
 
-/// The numbers of a line.
+/// Returns the numbers of a line.
 fn numbers(line: &str) -> Vec<f64> {
     let words = line.split(|c: char| !"+-.e".contains(c) && !c.is_ascii_digit());
     words.filter_map(|word| word.parse().ok()).collect()
 }
 
-/// The box of include/README.md is 1 cm deep in its slab, face on face, and 1 mm deeper in each of
-/// two more frames.
-fn assert_depth_of_the_box(said: &str) {
-    assert_eq!(said.lines().count(), 3, "{said}");
-    for line in said.lines() {
+/// Checks the output of include/README.md's C program: its box is 1 cm deep in the slab, face on face,
+/// and 1 mm deeper in each of two more frames.
+fn assert_depth_of_the_box(output: &str) {
+    assert_eq!(output.lines().count(), 3, "{output}");
+    for line in output.lines() {
         let [frame, depth, up, contacts] = numbers(line)[..] else {
             panic!("{line}");
         };
@@ -629,11 +587,12 @@ fn assert_depth_of_the_box(said: &str) {
     }
 }
 
-/// The README's ball is 10 cm deep in its slab, and the page shows what the program prints.
-fn assert_depth_of_the_ball(said: &str) {
+/// Checks the output of README.md's program, whose ball is 10 cm deep in its slab, and the output that
+/// the page shows.
+fn assert_depth_of_the_ball(output: &str) {
     let page = page("README.md");
     let shown = page.lines().find(|line| line.starts_with("depth 0.100"));
-    for line in [said.trim(), shown.expect("what it prints")] {
+    for line in [output.trim(), shown.expect("the program's output")] {
         for (found, truth) in numbers(line).iter().zip([0.1, 0.0, 1.0, 1.9, 0.45]) {
             assert!((found - truth).abs() < 2e-3, "{line}");
         }
@@ -641,36 +600,35 @@ fn assert_depth_of_the_ball(said: &str) {
     }
 }
 
-/// A page's program compiles without a warning.
+/// Compiles a page's program without a warning.
 fn strict(program: Program, page: &str, language: &str) -> Executable {
     let program = program.source(program_of(&format!("{page}-{language}"), page, language));
     let program = program.flag("-pedantic").flag("-Werror");
     program.link_ours_shared().build()
 }
 
-/// The README's C program, here and, in libccd's precision, on libccd.
+/// Runs README.md's C program on this library and, in double precision, on libccd.
 #[test]
 fn readme_c_program() {
     let program = strict(Program::c("readme"), "README.md", "c");
     assert_depth_of_the_ball(&program.run([""; 0]).stdout);
-    if harness::Precision::CURRENT == Precision::Double {
+    if Precision::CURRENT == Precision::Double {
         let program = Program::c("readme-libccd").source(program_of("readme-libccd", "README.md", "c"));
-        let said = program.link_system().build().run([""; 0]).stdout;
-        assert!(page("README.md").contains(said.trim()), "{said}");
+        let output = program.link_system().build().run([""; 0]).stdout;
+        assert!(page("README.md").contains(output.trim()), "{output}");
     }
 }
 
-/// The C program of the headers' page.
 #[test]
-fn header_page_c_program() {
+fn include_readme_c_program() {
     let program = strict(Program::c("frames"), "include/README.md", "c");
     assert_depth_of_the_box(&program.run([""; 0]).stdout);
 }
 
-/// The README's two lines that link it, as they stand there, in a folder with its files.
+/// Runs README.md's two commands that link its program, in a folder with the files that they name.
 #[test]
 #[cfg(not(feature = "single"))]
-fn readme_links_its_program() {
+fn readme_link_commands() {
     let library = harness::library(Precision::CURRENT);
     let here = fresh("readme-links");
     fs::create_dir_all(here.join("target/swap")).expect("a directory");
@@ -691,24 +649,24 @@ fn readme_links_its_program() {
         let mut shell = Command::new("sh");
         shell.current_dir(&here).arg("-c").arg(format!("{line} && ./a.out"));
         assert_depth_of_the_ball(&must_succeed(&mut shell, line).stdout);
-        // Of the archive's 15 MB what is not needed is left out.
+        // The linker leaves out most of the archive's 15 MB.
         assert_small(line, size(&here.join("a.out")), 550_000);
     }
 }
 
-/// The C++ program, of unit spheres (0.3, 0.2, 0.1) apart: the sum of the radii less the distance.
-/// In single precision its double radius would be narrowed.
+/// Runs include/README.md's C++ program of two unit spheres (0.3, 0.2, 0.1) apart: the depth is the sum
+/// of the radii less the distance. (In single precision its double radius would be narrowed.)
 #[test]
 #[cfg(not(feature = "single"))]
-fn readme_cpp_program() {
+fn include_readme_cpp_program() {
     let program = strict(Program::cpp("readme"), "include/README.md", "cpp");
     let depth = numbers(&program.run([""; 0]).stdout)[0];
     assert!((depth - (2.0 - 0.14_f64.sqrt())).abs() < 1e-5, "{depth}");
 }
 
-/// The one file of this name below a directory.
+/// Returns the one file of this name below a directory.
 fn find(dir: &Path, name: &str) -> PathBuf {
-    let found = ran(Command::new("find"), &[&dir, &"-name", &name]);
+    let found = run(Command::new("find"), &[&dir, &"-name", &name]);
     assert_eq!(found.lines().count(), 1, "{name}: {found}");
     PathBuf::from(found.trim_end())
 }
