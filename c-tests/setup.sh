@@ -2,11 +2,10 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Installs the Debian packages that are missing, and nothing when none is.
-#   setup.sh        what the tests need
-#   setup.sh main   what the main job needs
-#   setup.sh check  installs nothing; says what the tests miss, in one line
-# As root, or through sudo. A Rust that is too old is named before anything is installed.
+# Installs missing Debian packages, as root or with sudo. First reports a Rust that is too old.
+#   setup.sh        packages of the tests
+#   setup.sh main   packages of the main job
+#   setup.sh check  installs nothing; prints the tests' missing packages in one line
 
 set -eu
 
@@ -14,19 +13,19 @@ cd "$(dirname "$0")/.."
 job=${1:-tests}
 missing=
 
-# rust_version MANIFEST: the oldest Rust that it takes
+# rust_version MANIFEST: prints its oldest supported Rust
 rust_version() {
     sed -n 's/^rust-version = "\(.*\)"$/\1/p' "$1"
 }
 
-# want_command COMMAND PACKAGE...: the packages, unless the command is there
+# want_command COMMAND PACKAGE...: adds the packages unless the command exists
 want_command() {
     command -v "$1" >/dev/null 2>&1 && return
     shift
     missing="$missing $*"
 }
 
-# want_package PACKAGE...: those that dpkg does not know as installed
+# want_package PACKAGE...: adds the packages that are not installed
 want_package() {
     for package in "$@"; do
         state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || state=absent
@@ -45,7 +44,7 @@ as_root() {
     fi
 }
 
-# apt_install PACKAGE...: the package lists are fetched only if they are too old
+# apt_install PACKAGE...: fetches the package lists only after a failure
 apt_install() {
     as_root apt-get install -y -q --no-install-recommends "$@" </dev/null && return
     as_root apt-get update -q </dev/null || return
@@ -67,7 +66,7 @@ tests | check)
     ;;
 esac
 for tool in cargo rustc; do
-    # A shim of rustup's is there and fails where no toolchain is.
+    # rustup's shim fails without a toolchain.
     if ! found=$($tool --version 2>/dev/null); then
         echo "setup.sh: $tool is missing: install Rust $oldest or later first ($from)" >&2
         exit 1
@@ -81,7 +80,6 @@ for tool in cargo rustc; do
 done
 
 want_command cc gcc libc6-dev
-# Any program that compiles shows that the C library's headers are there.
 if command -v cc >/dev/null 2>&1; then
     echo '#include <stdio.h>' | cc -E -o /dev/null - 2>/dev/null || missing="$missing libc6-dev"
 fi
@@ -117,7 +115,7 @@ if [ -n "$missing" ]; then
     apt_install $missing
 fi
 
-# One test builds the library with the oldest Rust that it promises, where that is.
+# One test builds the library with the oldest supported Rust.
 if [ "$job" = tests ] && command -v rustup >/dev/null 2>&1; then
     oldest=$(rust_version Cargo.toml)
     rustup run "$oldest" cargo --version >/dev/null 2>&1 ||
@@ -125,8 +123,7 @@ if [ "$job" = tests ] && command -v rustup >/dev/null 2>&1; then
         echo "setup.sh: no Rust $oldest: its test will be skipped" >&2
 fi
 
-# The main job compares with the system's libccd where it can be had, and goes
-# on without it where not.
+# The main job compares with the system's libccd, if there is one.
 if [ "$job" = main ] && command -v apt-get >/dev/null 2>&1; then
     missing=
     want_package libccd2

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# All tests, in double and in single precision, and the C programs of the contract
-# under sanitizers and valgrind. Sets itself up. The last line counts the tests.
+# Runs all tests in double and in single precision, and the C programs of the contract under
+# sanitizers and valgrind, after setup.sh. The last line counts the tests.
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -21,14 +21,14 @@ passed=0
 failed=0
 skipped=0
 
-# sum KIND: of the last step's "test result" lines
+# sum KIND: sums the counts of the last step's "test result" lines
 sum() {
     awk -v kind="$1" '/^test result: / {
         for (i = 2; i <= NF; i++) if ($i ~ "^" kind) n += $(i - 1)
     } END { print n + 0 }' "$log"
 }
 
-# run WHAT COMMAND...: one step. All are run, so that one failure does not hide another.
+# run TITLE COMMAND...: runs one step. A failure does not stop the others.
 run() {
     step=$((step + 1))
     printf '\n== step %s of 3, %s s after the start: %s\n\n' "$step" "$(($(date +%s) - start))" "$1"
@@ -39,28 +39,27 @@ run() {
         echo "$code" >"$log.code"
     } | tee "$log"
     wrong=$(sum failed)
-    # What does not compile, or dies, counts no test.
+    # A test that does not compile, or crashes, is not counted.
     [ "$(cat "$log.code")" -eq 0 ] || [ "$wrong" -gt 0 ] || wrong=1
     passed=$((passed + $(sum passed)))
     failed=$((failed + wrong))
     skipped=$((skipped + $(sum ignored)))
 }
 
-# What is compiled here is compiled once: in one piece it takes a third less time.
+# Without incremental builds and code units compilation takes a third less time.
 export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_CODEGEN_UNITS=1
 
 start=$(date +%s)
 run "double precision" cargo test --no-fail-fast
-# The same C programs where errors that leave no trace show, without what no tool sees:
-# headers and symbols, counts of supports, programs with a malloc of their own or under
-# callgrind. Side by side: the sanitizers wait for one compilation for half a minute.
+# Runs the C programs under tools, except tests of headers and symbols, programs with their own
+# malloc, and callgrind. In parallel: the sanitizers wait half a minute for one compilation.
 tools() {
-    unseen="--skip headers_ --skip archive_defines --skip memory --skip take_no_more"
+    skipped_tests="--skip headers_ --skip archive_defines --skip memory --skip take_no_more"
     wrong=0
     # shellcheck disable=SC2086  # one word each
     {
-        sh c-tests/tools/check.sh address --test contract --test extension -- $unseen >"$log.address" 2>&1 &
-        sh c-tests/tools/check.sh memcheck --test contract -- $unseen || wrong=1
+        sh c-tests/tools/check.sh address --test contract --test extension -- $skipped_tests >"$log.address" 2>&1 &
+        sh c-tests/tools/check.sh memcheck --test contract -- $skipped_tests || wrong=1
     }
     sh c-tests/tools/check.sh helgrind --test contract threads || wrong=1
     wait $! || wrong=1
@@ -68,7 +67,7 @@ tools() {
     return "$wrong"
 }
 run "gcc's sanitizers; valgrind, memory and threads" tools
-# Last: what the others run is compiled for double.
+# Last: the others run programs in double precision.
 run "single precision" cargo test --no-fail-fast --features single
 
 printf '\n%s passed, %s failed, %s skipped\n' "$passed" "$failed" "$skipped"

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The harness itself: each kind of link runs on the library it names.
+//! Checks the harness: each kind of link loads its library, and failures are reported.
 
 #[path = "mod.rs"]
 mod harness;
 
 use harness::{Precision, Program};
 
-fn name() -> String {
+/// Returns this library's `ccdImplementation()`.
+fn implementation() -> String {
     let precision = Precision::CURRENT.name();
     format!("warmccd {} {precision}", env!("CARGO_PKG_VERSION"))
 }
@@ -20,23 +21,23 @@ fn identity() -> Program {
 const NO_ARGS: [&str; 0] = [];
 
 #[test]
-fn shared_and_static_programs_run_on_ours() {
-    let expected = format!("libccd: {}\n", name());
+fn shared_and_static_programs_use_this_library() {
+    let expected = format!("libccd: {}\n", implementation());
     assert_eq!(identity().link_ours_shared().build().run(NO_ARGS).stdout, expected);
     assert_eq!(identity().link_ours_static().build().run(NO_ARGS).stdout, expected);
 }
 
-/// The system's library is double.
+/// Links this library and the system's, which is double, into one program.
 #[cfg(not(feature = "single"))]
 #[test]
-fn one_process_holds_both() {
+fn one_process_has_both_libraries() {
     let both = identity().flag("-DLINK_BOTH").link_ours_renamed_and_system().build();
-    let expected = format!("libccd: another\nrenamed: {}\n", name());
+    let expected = format!("libccd: another\nrenamed: {}\n", implementation());
     assert_eq!(both.run(NO_ARGS).stdout, expected);
 }
 
 #[test]
-fn a_failing_program_fails_its_test() {
+fn failing_programs_fail_their_test() {
     let program = identity().link_ours_shared().build();
     let mut broken = program.clone();
     broken.path = "/bin/false".into();

@@ -340,11 +340,11 @@ impl Program {
 
     /// Returns a C++ program: C++17 unless [`standard`](Self::standard) sets another.
     pub fn cpp(name: &str) -> Program {
-        Program::c(name).as_cpp()
+        Program::c(name).in_cpp()
     }
 
     /// Compiles the C source as C++.
-    pub fn as_cpp(mut self) -> Program {
+    pub fn in_cpp(mut self) -> Program {
         self.cpp = true;
         self
     }

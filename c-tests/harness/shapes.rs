@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Support mappings for the unit tests, and where to put them. The shapes of the C tests,
-//! with their exact truth, are those of `c-tests/harness/shapes.h`; these are closures, so that
-//! `cargo test --lib` needs no C compiler and Miri can run it.
+//! Support functions for the unit tests: closures, so that `cargo test --lib` needs no C compiler and
+//! Miri can run it. (The shapes of the C tests: `c-tests/harness/shapes.h`.)
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -13,11 +12,10 @@ use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 
 pub type Rotation = nalgebra::Rotation3<f64>;
 
-/// One type for all: the solvers are compiled once for it, not once for each pair of
-/// shapes.
+/// Shape of any kind: the solvers are compiled once.
 pub type Shape<'a> = Box<dyn Fn(&Vec3) -> Vec3 + 'a>;
 
-/// The difference of two bodies, whatever types they are.
+/// Returns the Minkowski difference of two bodies.
 pub fn difference<'a>(
     a: impl SupportMap + 'a,
     b: impl SupportMap + 'a,
@@ -28,7 +26,7 @@ pub fn difference<'a>(
     )
 }
 
-/// The same numbers on every machine.
+/// Random numbers, the same on every machine.
 pub struct Random(Pcg64);
 
 impl Random {
@@ -62,13 +60,13 @@ impl Random {
         nalgebra::UnitQuaternion::from_quaternion(q).to_rotation_matrix()
     }
 
-    /// `n` points on a sphere.
+    /// Returns `n` points on a sphere.
     pub fn points(&mut self, n: usize, radius: f64) -> Vec<Vec3> {
         (0..n).map(|_| self.direction() * radius).collect()
     }
 }
 
-/// The hull of the points.
+/// Returns the hull of the points.
 pub fn hull(points: &[Vec3]) -> Shape<'static> {
     let points = points.to_vec();
     Box::new(move |d| {
@@ -82,7 +80,7 @@ pub fn hull(points: &[Vec3]) -> Shape<'static> {
     })
 }
 
-/// The corners of a box with these half extents about the origin.
+/// Returns the corners of a box with these half extents about the origin.
 pub fn corners(half: Vec3) -> Vec<Vec3> {
     (0..8)
         .map(|i| {
@@ -92,7 +90,7 @@ pub fn corners(half: Vec3) -> Vec<Vec3> {
         .collect()
 }
 
-/// Points moved rigidly.
+/// Moves points rigidly.
 pub fn placed(points: &[Vec3], rotation: &Rotation, at: Vec3) -> Vec<Vec3> {
     points.iter().map(|p| rotation * p + at).collect()
 }
@@ -101,7 +99,7 @@ pub fn ball(at: Vec3, radius: f64) -> Shape<'static> {
     Box::new(move |d| at + d * radius)
 }
 
-/// All points within `radius` of the segment.
+/// Returns the points within `radius` of a segment.
 pub fn capsule(a: Vec3, b: Vec3, radius: f64) -> Shape<'static> {
     Box::new(move |d| (if d.dot(&(b - a)) > 0.0 { b } else { a }) + d * radius)
 }

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Stops `cargo test`, `cargo bench` and `cargo run --example` on a machine that is not
-//! set up, with one line. `C_TESTS_PARTLY=1` goes on all the same: what needs a missing
-//! program will fail.
+//! Stops `cargo test`, `cargo bench` and `cargo run --example` with one line on a machine that is not
+//! set up. With `C_TESTS_PARTLY=1` they continue, and tests that need a missing program fail.
 
 use std::process::Command;
 
@@ -14,12 +13,12 @@ fn main() {
     if std::env::var_os("C_TESTS_PARTLY").is_some() {
         return;
     }
-    // Without a shell there is no setup.sh to run either: the tests themselves will tell.
-    let Ok(said) = Command::new("sh").args(["../setup.sh", "check"]).output() else {
+    // Without a shell the tests themselves fail.
+    let Ok(output) = Command::new("sh").args(["../setup.sh", "check"]).output() else {
         return;
     };
-    if !said.status.success() {
-        let line = [said.stdout, said.stderr].concat();
+    if !output.status.success() {
+        let line = [output.stdout, output.stderr].concat();
         println!("cargo::error={}", String::from_utf8_lossy(&line).trim());
     }
 }

@@ -87,8 +87,8 @@ static double error_factor(const ccd_vec3_t v[4])
 }
 
 enum { SHAPES = 9 };
-static const char *const shape_names[SHAPES] = {
-    "any", "needle", "cap", "collinear", "two corners equal", "one point", "small integers", "far from the origin", "flat, p in plane"};
+static const char *const shape_names[SHAPES] = {"any", "needle", "cap", "collinear", "two corners equal", "one point",
+                                                "small integers", "far from the origin", "flat, p in plane"};
 
 /* Makes a triangle of the kind, and a point on, near or away from it. */
 static void draw(int shape, ccd_vec3_t v[4])

@@ -89,10 +89,12 @@ type Object = *const c_void;
 /// Shape of any type, for which the library is compiled once.
 type Body<'a> = &'a dyn Shape;
 
+type Found = Result<Option<Penetration>, Error>;
+
 /// Penetration query in Rust and in C, along DIR or in the plane across it where it takes a direction.
 struct Call {
     name: &'static str,
-    rust: fn(Body, Body, [Real; 3], &Settings, Option<&mut Warm>) -> Result<Option<Penetration>, Error>,
+    rust: fn(Body, Body, [Real; 3], &Settings, Option<&mut Warm>) -> Found,
     c: fn(Object, Object, *const ccd_t, *mut ccd_warm_t, c_uint, *mut ccd_penetration_t) -> c_int,
 }
 
@@ -138,7 +140,7 @@ fn call_in_c(
     (code, unsafe { out.assume_init() })
 }
 
-fn assert_same(rust: Result<Option<Penetration>, Error>, (code, c): (c_int, ccd_penetration_t)) {
+fn assert_same(rust: Found, (code, c): (c_int, ccd_penetration_t)) {
     let Some(hit) = rust.expect("valid input") else {
         return assert_eq!(code, CCD_MISS);
     };

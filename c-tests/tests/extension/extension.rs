@@ -16,7 +16,7 @@ const NO_ARGS: [&str; 0] = [];
 fn program(path: &str) -> Program {
     let file = Path::new(path);
     let program = Program::c(&file.file_stem().expect("a file").to_string_lossy()).source(path);
-    let program = if file.extension() == Some("cpp".as_ref()) { program.as_cpp() } else { program };
+    let program = if file.extension() == Some("cpp".as_ref()) { program.in_cpp() } else { program };
     program.flag("-DOURS_ALONE").link_ours_shared()
 }
 

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* <ccd/fcl.hpp>: every two of FCL's convex kinds at certified depths, in both orders, cold and
- * warm; contacts known in closed form; managers; the cache; what goes to FCL; bad input. In single
- * precision FCL is single too. */
+/* Checks <ccd/fcl.hpp>: every pair of FCL's convex kinds at certified depths, in both orders, cold and
+ * warm; contacts of resting shapes; managers; the cache; pairs that FCL handles itself; invalid input.
+ * In single precision FCL is single too. */
 
 #include "engines/fcl_shapes.h"
 
@@ -17,11 +17,11 @@
 typedef ccd_real_t S;
 typedef fcl::CollisionObject<S> object;
 typedef fcl::CollisionResult<S> collision;
-typedef fcl::DistanceResult<S> nearest;
+typedef fcl::DistanceResult<S> proximity;
 
 static const bool SINGLE = sizeof(S) == sizeof(float);
 static const S TOLERANCE = S(1e-6);
-/* Rounding of poses and support points, of the size. */
+/* Rounding of poses and support points, relative to the size. */
 static const double ROUNDING = SINGLE ? 3e-6 : 1e-9;
 
 static object placed(const geometry &shape, const vec &at, const vec &about = vec::Zero())
@@ -33,9 +33,9 @@ static object placed(const geometry &shape, const vec &at, const vec &about = ve
     return object(shape, pose);
 }
 
-static fcl::CollisionRequest<S> contacts(std::size_t most)
+static fcl::CollisionRequest<S> contacts(std::size_t max)
 {
-    return fcl::CollisionRequest<S>(most, true, 1, false, true, fcl::GST_LIBCCD, TOLERANCE);
+    return fcl::CollisionRequest<S>(max, true, 1, false, true, fcl::GST_LIBCCD, TOLERANCE);
 }
 
 /* --- against exact truth -------------------------------------------------------- */
@@ -46,45 +46,45 @@ struct context {
     double depth;
 };
 #define CONTEXT(c) (c).a, (c).b, (c).pose, (c).depth
-#define SAID "%s %s %ld at %g: "
+#define AT "%s %s %ld at %g: "
 
-/* Whether the point is farther outside of the shape than this. */
-static bool outside(const shape_t &shape, const vec &p, double bound, double width)
+/* Returns whether the point is outside of the shape by more than `bound`. */
+static bool is_outside(const shape_t &shape, const vec &p, double bound, double width)
 {
     shape_t point = shape_sphere(0);
     shape_move(&point, p[0], p[1], p[2]);
     return !(-truth_depth_within(&shape, &point, width).lower <= bound);
 }
 
-/* One contact of the first with the second, the deepest there is. */
-static void judge_contact(const shape_t &a, const shape_t &b, const collision &r, const pose_truth_t &known, const context &c)
+/* Checks the one contact of a pair, the deepest. */
+static void check_contact(const shape_t &a, const shape_t &b, const collision &r, const known_t &known, const context &c)
 {
     const fcl::Contact<S> &contact = r.getContact(0);
     const double n[3] = {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])};
     const double error = TOLERANCE + ROUNDING * known.size, depth = double(contact.penetration_depth);
-    CHECK(r.numContacts() == 1, SAID "%zu contacts", CONTEXT(c), r.numContacts());
-    CHECK(std::fabs(contact.normal.norm() - 1) < (SINGLE ? 1e-5 : 1e-12), SAID "normal", CONTEXT(c));
-    CHECK(depth >= known.lower - error && depth <= known.upper * 1.001 + error, SAID "depth %g", CONTEXT(c), depth);
-    CHECK(truth_support_value(&a, &b, n) <= depth + error, SAID "the second is not out by %g along the normal", CONTEXT(c), depth);
-    /* pos is in the overlap, or as near to it as the overlap is thin. */
+    CHECK(r.numContacts() == 1, AT "%zu contacts", CONTEXT(c), r.numContacts());
+    CHECK(std::fabs(contact.normal.norm() - 1) < (SINGLE ? 1e-5 : 1e-12), AT "normal", CONTEXT(c));
+    CHECK(depth >= known.lower - error && depth <= known.upper * 1.001 + error, AT "depth %g", CONTEXT(c), depth);
+    CHECK(truth_support_value(&a, &b, n) <= depth + error, AT "overlap after a move by %g along the normal", CONTEXT(c), depth);
+    /* pos is in both shapes, within the depth. */
     for (const shape_t *shape : {&a, &b})
-        CHECK(!outside(*shape, contact.pos, depth + 10 * error, 0.01 * (depth + error)), SAID "pos outside", CONTEXT(c));
+        CHECK(!is_outside(*shape, contact.pos, depth + 10 * error, 0.01 * (depth + error)), AT "pos outside", CONTEXT(c));
 }
 
-static void judge_distance(const shape_t &a, const shape_t &b, const nearest &r, const pose_truth_t &known, const context &c)
+static void check_distance(const shape_t &a, const shape_t &b, const proximity &r, const known_t &known, const context &c)
 {
     const double error = TOLERANCE + ROUNDING * known.size, d = double(r.min_distance);
-    CHECK(d <= -known.lower + error && d >= -known.upper - error, SAID "distance %g", CONTEXT(c), d);
+    CHECK(d <= -known.lower + error && d >= -known.upper - error, AT "distance %g", CONTEXT(c), d);
     const vec way = r.nearest_points[1] - r.nearest_points[0];
-    if (d > 0) /* the points are that far apart, and on the objects: no nearer than these are */
-        CHECK(std::fabs(way.norm() - d) <= 2 * error, SAID "points %g apart, distance %g", CONTEXT(c), double(way.norm()), d);
+    if (d > 0)
+        CHECK(std::fabs(way.norm() - d) <= 2 * error, AT "points %g apart, distance %g", CONTEXT(c), double(way.norm()), d);
     for (int i = 0; i < 2; i++)
-        CHECK(!outside(i ? b : a, r.nearest_points[i], 3 * error, error), SAID "point %d outside", CONTEXT(c), i);
+        CHECK(!is_outside(i ? b : a, r.nearest_points[i], 3 * error, error), AT "point %d outside", CONTEXT(c), i);
 }
 
-/* Cold, warm, and with the state of the other order; yes or no, and a distance without its points, are
- * the same, their sign too. */
-static void one_pose(const body_t &a, const body_t &b, const object &oa, const object &ob, const pose_truth_t &known,
+/* Checks one pose cold, warm, and with the state of the other order, and that the results without contacts and
+ * points are the same. */
+static void check_pose(const body_t &a, const body_t &b, const object &oa, const object &ob, const known_t &known,
                      ccd_fcl::PairCache &cache, const context &c)
 {
     const double error = TOLERANCE + ROUNDING * known.size;
@@ -96,26 +96,26 @@ static void one_pose(const body_t &a, const body_t &b, const object &oa, const o
             const object *o1 = order ? &ob : &oa, *o2 = order ? &oa : &ob;
             const shape_t &s1 = order ? b.shape : a.shape, &s2 = order ? a.shape : b.shape;
             collision r, plain;
-            nearest d, short_d;
+            proximity d, short_d;
             ccd_fcl::collide(o1, o2, contacts(1), r, pairs);
-            CHECK(r.isCollision() || known.lower <= error, SAID "missed", CONTEXT(c));
-            CHECK(!r.isCollision() || known.upper >= -error, SAID "spurious", CONTEXT(c));
+            CHECK(r.isCollision() || known.lower <= error, AT "missed", CONTEXT(c));
+            CHECK(!r.isCollision() || known.upper >= -error, AT "spurious", CONTEXT(c));
             if (r.isCollision())
-                judge_contact(s1, s2, r, known, c);
+                check_contact(s1, s2, r, known, c);
             ccd_fcl::distance(o1, o2, with_points, d, pairs);
-            judge_distance(s1, s2, d, known, c);
+            check_distance(s1, s2, d, known, c);
             ccd_fcl::distance(o1, o2, without, short_d, pairs);
-            CHECK(std::fabs(short_d.min_distance - d.min_distance) <= 2 * error, SAID "distance %g", CONTEXT(c), double(short_d.min_distance));
-            for (int again = 0; again < 2; again++) { /* full, or once more */
+            CHECK(std::fabs(short_d.min_distance - d.min_distance) <= 2 * error, AT "distance without points", CONTEXT(c));
+            for (int run = 0; run < 2; run++) {
                 ccd_fcl::collide(o1, o2, fcl::CollisionRequest<S>(), plain, pairs);
-                CHECK(plain.numContacts() == r.numContacts() || std::fabs(known.upper) <= error, SAID "yes or no", CONTEXT(c));
+                CHECK(plain.numContacts() == r.numContacts() || std::fabs(known.upper) <= error, AT "plain", CONTEXT(c));
             }
-            CHECK(pairs.size() == 1 || pass > 0, SAID "%zu states", CONTEXT(c), pairs.size());
+            CHECK(pairs.size() == 1 || pass > 0, AT "%zu states", CONTEXT(c), pairs.size());
         }
     }
 }
 
-static void certified(int poses)
+static void check_certified_depths(int poses)
 {
     static const double depths[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-14, 0, -1e-6, -1e-3, -1e-1};
     ccd_fcl::PairCache cache;
@@ -124,7 +124,7 @@ static void certified(int poses)
         for (int j = 0; j < KINDS; j++)
             for (long k = 0; k < poses; k++) {
                 static body_t a, b;
-                pose_truth_t known;
+                known_t known;
                 if (i == KIND_TRIANGLE && j == KIND_TRIANGLE)
                     continue; /* never overlap */
                 body_random(&a, i);
@@ -132,22 +132,22 @@ static void certified(int poses)
                 pose_overlapping(&a, &b, &known);
                 const geometry ga = fcl_geometry(a, TRIANGLE_SHAPE), gb = fcl_geometry(b, TRIANGLE_SHAPE);
                 object oa(ga, fcl_pose(a.shape)), ob(gb, fcl_pose(b.shape));
-                CHECK(ccd_fcl::is_supported(ga.get(), gb.get()), "%s %s", KIND_NAME[i], KIND_NAME[j]);
-                one_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
+                CHECK(ccd_fcl::is_ours(ga.get(), gb.get()), "%s %s", KIND_NAME[i], KIND_NAME[j]);
+                check_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
                 for (double depth : depths) {
                     if (depth * known.size >= known.upper)
                         continue;
                     pose_at_depth(&b, &known, depth * known.size);
                     ob.setTransform(fcl_pose(b.shape));
-                    one_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
+                    check_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
                 }
             }
 }
 
 /* --- several contacts ----------------------------------------------------------- */
 
-/* Contacts of a shape that rests on a table from z = -1 to 0, by `depth`; and the table on it. */
-static void resting(const char *what, const geometry &shape, S height, const vec &about, std::size_t expected, S spread)
+/* Checks the contacts of a shape on a table from z = -1 to 0, 1 mm deep, in both orders. */
+static void check_resting(const char *what, const geometry &shape, S height, const vec &about, std::size_t expected, S spread)
 {
     const geometry board = std::make_shared<fcl::Box<S>>(4, 4, 1);
     const S depth = S(1e-3), error = S(ROUNDING) * 10 + TOLERANCE;
@@ -168,9 +168,10 @@ static void resting(const char *what, const geometry &shape, S height, const vec
             for (std::size_t k = 0; k < i; k++)
                 across = std::max(across, (c.pos - r.getContact(k).pos).norm());
         }
-        CHECK(std::fabs(across - spread) <= S(0.01) * spread + S(1e-5), "%s: %g across, not %g", what, double(across), double(spread));
+        CHECK(std::fabs(across - spread) <= S(0.01) * spread + S(1e-5),
+              "%s: %g across, not %g", what, double(across), double(spread));
 
-        /* As many as asked for: of the pair, and in all. */
+        /* The largest number of contacts of a pair, and in all. */
         for (std::size_t room = 1; room <= 3; room++) {
             collision few, one;
             ccd_fcl::Settings settings;
@@ -179,7 +180,7 @@ static void resting(const char *what, const geometry &shape, S height, const vec
             CHECK(few.numContacts() == std::min(room, expected), "%s: %zu of %zu", what, few.numContacts(), room);
             ccd_fcl::collide(order ? &body : &table, order ? &table : &body, contacts(room), one, cache, settings);
             CHECK(one.numContacts() == 1, "%s: %zu, not one", what, one.numContacts());
-            if (room == 2) { /* what another pair has put there counts */
+            if (room == 2) { /* contacts of other pairs count */
                 ccd_fcl::collide(order ? &body : &table, order ? &table : &body, contacts(room), one, cache);
                 CHECK(one.numContacts() == 2, "%s: %zu, not two", what, one.numContacts());
             }
@@ -187,15 +188,15 @@ static void resting(const char *what, const geometry &shape, S height, const vec
     }
 }
 
-static void several(void)
+static void check_manifolds(void)
 {
     const vec lying(0, S(M_PI / 2), 0), up = vec::Zero();
-    resting("box", std::make_shared<fcl::Box<S>>(1, 2, S(0.5)), S(0.25), up, 4, std::sqrt(S(5)));
-    resting("sphere", std::make_shared<fcl::Sphere<S>>(S(0.3)), S(0.3), up, 1, 0);
-    resting("lying capsule", std::make_shared<fcl::Capsule<S>>(S(0.2), 1), S(0.2), lying, 2, 1);
-    resting("standing capsule", std::make_shared<fcl::Capsule<S>>(S(0.2), 1), S(0.7), up, 1, 0);
-    resting("lying cylinder", std::make_shared<fcl::Cylinder<S>>(S(0.2), 1), S(0.2), lying, 2, 1);
-    resting("ellipsoid", std::make_shared<fcl::Ellipsoid<S>>(S(0.3), S(0.2), S(0.4)), S(0.4), up, 1, 0);
+    check_resting("box", std::make_shared<fcl::Box<S>>(1, 2, S(0.5)), S(0.25), up, 4, std::sqrt(S(5)));
+    check_resting("sphere", std::make_shared<fcl::Sphere<S>>(S(0.3)), S(0.3), up, 1, 0);
+    check_resting("lying capsule", std::make_shared<fcl::Capsule<S>>(S(0.2), 1), S(0.2), lying, 2, 1);
+    check_resting("standing capsule", std::make_shared<fcl::Capsule<S>>(S(0.2), 1), S(0.7), up, 1, 0);
+    check_resting("lying cylinder", std::make_shared<fcl::Cylinder<S>>(S(0.2), 1), S(0.2), lying, 2, 1);
+    check_resting("ellipsoid", std::make_shared<fcl::Ellipsoid<S>>(S(0.3), S(0.2), S(0.4)), S(0.4), up, 1, 0);
 }
 
 /* --- managers ---------------------------------------------------------------------- */
@@ -207,13 +208,14 @@ static std::vector<object> crowd(int n, double half_width)
         static body_t body;
         body_random(&body, i % KINDS);
         body_turn(&body);
-        shape_move(&body.shape, uniform(-half_width, half_width), uniform(-half_width, half_width), uniform(-half_width, half_width));
+        for (S &x : body.shape.pos)
+            x = S(uniform(-half_width, half_width));
         objects.emplace_back(fcl_geometry(body, TRIANGLE_SHAPE), fcl_pose(body.shape));
     }
     return objects;
 }
 
-static void managers(void)
+static void check_managers(void)
 {
     uniform_seed(11);
     std::vector<object> objects = crowd(60, 0.8);
@@ -248,11 +250,11 @@ static void managers(void)
         others.registerObject(&o);
     }
     others.setup();
-    nearest least;
+    proximity least;
     for (object &o : objects)
         for (object &x : far_off) {
             ccd_fcl::PairCache cold;
-            nearest r;
+            proximity r;
             ccd_fcl::distance(&o, &x, fcl::DistanceRequest<S>(true, true), r, cold);
             least.update(r);
         }
@@ -260,78 +262,81 @@ static void managers(void)
     data.request = fcl::DistanceRequest<S>(true, true);
     manager.distance(&others, &data, ccd_fcl::DistanceFunction<S>);
     CHECK(std::fabs(data.result.min_distance - least.min_distance) <= 2e-6 + ROUNDING && least.min_distance > 0.1,
-          "nearest %g, not %g", double(data.result.min_distance), double(least.min_distance));
-    CHECK((data.result.o1 == least.o1 && data.result.o2 == least.o2) || (data.result.o1 == least.o2 && data.result.o2 == least.o1),
+          "distance %g, not %g", double(data.result.min_distance), double(least.min_distance));
+    const auto *o1 = data.result.o1, *o2 = data.result.o2;
+    CHECK((o1 == least.o1 && o2 == least.o2) || (o1 == least.o2 && o2 == least.o1),
           "other objects");
 }
 
 /* --- the cache ---------------------------------------------------------------------- */
 
-static void states(void)
+static void check_cache(void)
 {
     const geometry box = std::make_shared<fcl::Box<S>>(1, 1, 1);
     std::vector<object> row;
     ccd_fcl::PairCache cache;
     for (int i = 0; i < 4; i++)
         row.push_back(placed(box, vec(S(0.9) * S(i), S(0.05) * S(i * i), 0), vec(S(0.05) * S(i), S(0.02), S(0.03))));
-    const auto ask = [&](int i, int k) {
+    const auto collide = [&](int i, int k) {
         collision r;
         ccd_fcl::collide(&row[std::size_t(i)], &row[std::size_t(k)], contacts(1), r, cache);
         return r.numContacts();
     };
-    CHECK(ask(0, 1) && ask(1, 2) && ask(2, 3) && ask(2, 1) && cache.size() == 3, "%zu states", cache.size());
+    CHECK(collide(0, 1) && collide(1, 2) && collide(2, 3) && collide(2, 1) && cache.size() == 3, "%zu states", cache.size());
     cache.forget(&row[0]);
     CHECK(cache.size() == 2, "%zu states", cache.size());
     cache.forget(&row[2]);
     CHECK(cache.size() == 0, "%zu states", cache.size());
-    ask(0, 1), ask(2, 1);
+    collide(0, 1), collide(2, 1);
     cache.next_frame();
     CHECK(cache.size() == 2, "%zu states", cache.size());
-    ask(1, 0); /* the other pair's objects are gone */
+    collide(1, 0); /* the other pair is not queried in this frame */
     cache.next_frame();
     CHECK(cache.size() == 1, "%zu states", cache.size());
     cache.next_frame();
     CHECK(cache.size() == 0, "%zu states", cache.size());
-    ask(0, 1);
+    collide(0, 1);
     cache.clear();
     CHECK(cache.size() == 0, "%zu states", cache.size());
 
-    /* The state found in the other order is the flipped one, and the same again when found back. */
-    ask(0, 1);
+    /* The state of the other order is the flipped one. */
+    collide(0, 1);
     const ccd_warm_t before = *cache.state(&row[0], &row[1]), other = *cache.state(&row[1], &row[0]);
     ccd_warm_t flipped = before;
     ccdWarmFlip(&flipped);
     CHECK(same_bits(&flipped, &other, sizeof other), "not flipped");
     CHECK(same_bits(&before, cache.state(&row[0], &row[1]), sizeof before), "not flipped back");
-    CHECK(!same_bits(&before, &other, sizeof other), "a hit leaves nothing that an order matters to");
+    CHECK(!same_bits(&before, &other, sizeof other), "the state does not depend on the order");
 }
 
-/* --- what goes to FCL --------------------------------------------------------------- */
+/* --- pairs that FCL handles itself -------------------------------------------------- */
 
-static void left_to_fcl(void)
+static void check_pairs_of_fcl(void)
 {
     auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSS<S>>>();
     fcl::generateBVHModel(*mesh, fcl::Box<S>(1, 1, 1), fcl::Transform3<S>::Identity());
-    auto vague = std::make_shared<fcl::Sphere<S>>(S(0.4));
-    vague->cost_density = S(0.5); /* neither occupied nor free */
-    vague->threshold_occupied = 1;
-    const geometry kinds[] = {mesh, std::make_shared<fcl::Halfspace<S>>(vec(0, 0, 1), 0), vague};
+    auto uncertain = std::make_shared<fcl::Sphere<S>>(S(0.4));
+    uncertain->cost_density = S(0.5); /* neither occupied nor free */
+    uncertain->threshold_occupied = 1;
+    const geometry kinds[] = {mesh, std::make_shared<fcl::Halfspace<S>>(vec(0, 0, 1), 0), uncertain};
     const object ball = placed(std::make_shared<fcl::Sphere<S>>(S(0.3)), vec(0, 0, S(0.7)));
     for (const geometry &kind : kinds) {
         const object other = placed(kind, vec(0, 0, S(0.05)));
         ccd_fcl::PairCache cache;
         collision r, theirs;
-        CHECK(!ccd_fcl::is_supported(ball.collisionGeometry().get(), kind.get()), "ours?");
+        CHECK(!ccd_fcl::is_ours(ball.collisionGeometry().get(), kind.get()), "not for this library");
         if (SINGLE && kind == mesh)
             continue;
         ccd_fcl::collide(&ball, &other, contacts(10), r, cache);
         fcl::collide(&ball, &other, contacts(10), theirs);
-        CHECK(cache.size() == 0 && r.numContacts() == theirs.numContacts(), "%zu contacts, FCL %zu", r.numContacts(), theirs.numContacts());
+        CHECK(cache.size() == 0 && r.numContacts() == theirs.numContacts(),
+              "%zu contacts, FCL %zu", r.numContacts(), theirs.numContacts());
         for (std::size_t i = 0; i < r.numContacts(); i++)
             CHECK(r.getContact(i).penetration_depth == theirs.getContact(i).penetration_depth, "contact %zu", i);
     }
     /* costs */
-    const object box = placed(std::make_shared<fcl::Box<S>>(1, 1, 1), vec(0, 0, 0)), near = placed(std::make_shared<fcl::Box<S>>(1, 1, 1), vec(0, 0, S(0.9)));
+    const geometry cube = std::make_shared<fcl::Box<S>>(1, 1, 1);
+    const object box = placed(cube, vec(0, 0, 0)), near = placed(cube, vec(0, 0, S(0.9)));
     ccd_fcl::PairCache cache;
     collision r;
     fcl::CollisionRequest<S> request = contacts(10);
@@ -340,9 +345,9 @@ static void left_to_fcl(void)
     CHECK(r.numCostSources() == 1, "%zu costs", r.numCostSources());
 }
 
-/* --- vertices, bad input ------------------------------------------------- */
+/* --- hulls, invalid input ------------------------------------------------ */
 
-/* A globe of planar faces with more vertices than are scanned; rests on its bottom ring. */
+/* Returns a globe of planar faces. */
 static geometry globe(int rings, int around)
 {
     auto vertices = std::make_shared<std::vector<vec>>();
@@ -366,7 +371,8 @@ static geometry globe(int rings, int around)
     return std::make_shared<fcl::Convex<S>>(vertices, (rings - 2) * around + 2, faces, true);
 }
 
-static void vertices(void)
+/* Checks hulls with more vertices than are scanned, and with fewer. */
+static void check_hulls(void)
 {
     const geometry fine = globe(12, 16), coarse = globe(6, 8); /* 176 and 40 vertices */
     const object table = placed(std::make_shared<fcl::Box<S>>(4, 4, 1), vec(0, 0, S(-0.5)));
@@ -389,19 +395,19 @@ static void vertices(void)
     }
 }
 
-template <typename Ask>
-static void refused(const char *what, Ask ask)
+template <typename Call>
+static void check_rejected(const char *what, Call call)
 {
     bool thrown = false;
     try {
-        ask();
+        call();
     } catch (const std::invalid_argument &) {
         thrown = true;
     }
     CHECK(thrown, "%s", what);
 }
 
-static void bad_input(void)
+static void check_invalid_input(void)
 {
     const geometry shapes[] = {std::make_shared<fcl::Box<S>>(1, 1, 1), std::make_shared<fcl::Sphere<S>>(1)};
     const S nan = std::numeric_limits<S>::quiet_NaN(), inf = std::numeric_limits<S>::infinity();
@@ -410,24 +416,24 @@ static void bad_input(void)
             const object good = placed(shape, vec(0, 0, 0)), lost = placed(shape, vec(0, bad, 0));
             ccd_fcl::PairCache cache;
             collision r;
-            nearest d;
-            const fcl::DistanceRequest<S> plain;
-            refused("collide", [&] { ccd_fcl::collide(&good, &lost, contacts(1), r, cache); });
-            refused("collide, other order", [&] { ccd_fcl::collide(&lost, &good, contacts(1), r, cache); });
-            refused("distance", [&] { ccd_fcl::distance(&good, &lost, plain, d, cache); });
-            refused("tolerance", [&] { ccd_fcl::distance(&good, &good, fcl::DistanceRequest<S>(true, true, 0, 0, nan), d, cache); });
+            proximity d;
+            const fcl::DistanceRequest<S> plain, invalid(true, true, 0, 0, nan);
+            check_rejected("collide", [&] { ccd_fcl::collide(&good, &lost, contacts(1), r, cache); });
+            check_rejected("collide, other order", [&] { ccd_fcl::collide(&lost, &good, contacts(1), r, cache); });
+            check_rejected("distance", [&] { ccd_fcl::distance(&good, &lost, plain, d, cache); });
+            check_rejected("tolerance", [&] { ccd_fcl::distance(&good, &good, invalid, d, cache); });
             CHECK(!r.isCollision() && d.o1 == nullptr, "written");
         }
 }
 
 int main(int argc, char **argv)
 {
-    certified(argc > 1 ? atoi(argv[1]) : 2);
-    several();
-    managers();
-    states();
-    left_to_fcl();
-    vertices();
-    bad_input();
+    check_certified_depths(argc > 1 ? atoi(argv[1]) : 2);
+    check_manifolds();
+    check_managers();
+    check_cache();
+    check_pairs_of_fcl();
+    check_hulls();
+    check_invalid_input();
     return checks_end();
 }

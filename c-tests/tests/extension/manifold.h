@@ -148,12 +148,11 @@ static inline polygon_t polygon_clip(const polygon_t *a, const polygon_t *b)
     return polygon_hull(&rest);
 }
 
-/* Computes the face along sign * n and the height of its support plane along n. Returns 0 where the
+/* Computes the face along sign * n. Returns 0 where the
  * library may or may not count a vertex to the face: it is between half the slop and the slop low, or as
  * steeply below the highest vertices as half the slop over the whole object. The slop is at least twice
  * `noise`, the rounding of a height. */
-static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, double slop, double noise, polygon_t *face,
-                                double *top)
+static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, double slop, double noise, polygon_t *face)
 {
     static const ccd_real_t origin[3];
     static truth_core_t c;
@@ -183,7 +182,6 @@ static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, do
             clear = 0;
     }
     *face = polygon_hull(&in);
-    *top = (double)(sign * most);
     return clear;
 }
 

@@ -83,7 +83,8 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
     switch (s->type) {
     case SHAPE_SPHERE: return span_quadric(q, e, ball, 0, r2);
     case SHAPE_BOX:
-        return span_intersection(span_intersection(span_slab(q[0], e[0], p0), span_slab(q[1], e[1], p1)), span_slab(q[2], e[2], (double)s->p[2]));
+        return span_intersection(span_intersection(span_slab(q[0], e[0], p0), span_slab(q[1], e[1], p1)),
+                                 span_slab(q[2], e[2], (double)s->p[2]));
     case SHAPE_CYLINDER: return span_intersection(span_quadric(q, e, cylinder, 0, r2), slab);
     case SHAPE_CAPSULE: {
         const span_t part[3] = {span_intersection(span_quadric(q, e, cylinder, 0, r2), slab), span_quadric(q, e, ball, p1, r2),

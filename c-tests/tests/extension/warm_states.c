@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Whatever a state holds, every answer is judged (tests/stability/judge.h): cold, swapped, from its own
- * state, from that flipped, from another pair's, from bytes. Then what a state is worth, and that it
- * keeps its side.
+/* Judges results (tests/stability/judge.h) from every kind of state: cold, of the same pair, flipped, of
+ * another pair, any bytes. Checks how many support calls a state saves, and that it stays on its side.
  *
  *   warm_states [pairs a call] */
 
@@ -15,20 +14,19 @@ enum { PAIRS = 400 };
 
 static int pairs = PAIRS;
 
-/* Every call that takes a state, but ccdIntersect, which is one of them. */
-static const int asks[] = {CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN, CALL_PENETRATION, CALL_ALONG, CALL_PLANAR, CALL_MPR_WARM,
-                           CALL_MPR_INTERSECT_WARM, CALL_DISTANCE};
+/* The calls that take a state. ccdIntersect runs one of them. */
+static const int calls[] = {CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN, CALL_PENETRATION, CALL_ALONG, CALL_PLANAR, CALL_MPR_WARM,
+                            CALL_MPR_INTERSECT_WARM, CALL_DISTANCE};
 
 typedef struct {
     entry_t call;
     pair_t pair;
-    double dir[3]; /* along, or normal of the plane */
+    double dir[3]; /* of a depth along it, or normal of the plane */
     criteria_t criteria;
-    int limited; /* stopped at the cap from some state */
+    int limited; /* a result reached the support limit */
 } case_t;
 
-/* One question, whatever comes of it. */
-static answer_t ask_pair(case_t *c, int swap, ccd_warm_t *warm)
+static answer_t run_unjudged(case_t *c, int swap, ccd_warm_t *warm)
 {
     shape_t a = swap ? c->pair.b : c->pair.a, b = swap ? c->pair.a : c->pair.b;
     const ccd_t ccd = counting_query(c->criteria.tol);
@@ -38,17 +36,18 @@ static answer_t ask_pair(case_t *c, int swap, ccd_warm_t *warm)
     return call_guarded(&c->call, &a, &b, &ccd, warm, &dir, call_limit(&c->call));
 }
 
-/* The same, judged. */
-static answer_t answer(case_t *c, int swap, ccd_warm_t *warm, const char *state)
+/* Runs a call and judges the result. */
+static answer_t run_judged(case_t *c, int swap, ccd_warm_t *warm, const char *state)
 {
-    const answer_t x = ask_pair(c, swap, warm);
+    const answer_t x = run_unjudged(c, swap, warm);
     const int faults = judge(&c->call, &x, swap ? &c->pair.b : &c->pair.a, swap ? &c->pair.a : &c->pair.b, &c->criteria)
         & FAULTS_FORBIDDEN & ~FAULT_LIMIT;
     double across = truth_dot3(x.dir, c->dir);
     CHECK(!faults, "%s from %s", c->call.name, state);
     if (faults)
         print_faulty_answer(&c->call, &x, faults, &c->criteria.truth);
-    CHECK(c->call.call != CALL_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_eps(), "planar: %g out of the plane", across);
+    CHECK(c->call.call != CALL_PLANAR || x.code == CCD_MISS || fabs(across) <= 64 * real_eps(),
+          "planar: %g out of the plane", across);
     c->limited |= x.code == CCD_LIMIT;
     return x;
 }
@@ -60,20 +59,20 @@ static int same(const answer_t *x, const answer_t *y)
         && same_bits(x->point1, y->point1, sizeof x->point1) && same_bits(x->point2, y->point2, sizeof x->point2);
 }
 
-/* Calls of a query that wants no pos: of a local search that is asked again pos costs as much as at first. */
+/* Returns the support calls without those for pos, which a state saves only in part. */
 static unsigned long cost(case_t *c, int swap, const ccd_warm_t *warm)
 {
     ccd_warm_t copy = *warm;
     wanted_outputs = CCD_WANT_POINTS;
-    answer_t x = ask_pair(c, swap, &copy);
+    answer_t x = run_unjudged(c, swap, &copy);
     wanted_outputs = CCD_WANT_ALL;
     return x.calls;
 }
 
 /* --- pairs --------------------------------------------------------------------------- */
 
-/* Two polygons in any plane, which may overlap. Their depth is that of prisms on them, so high that the
- * least is in the plane. */
+/* Makes two polygons in a random plane, which may overlap. Their depth is that of prisms on them, so high that the
+ * least depth is in the plane. */
 static void make_planar(case_t *c, rng_t *d)
 {
     double rot[9], spin[9], all[9], at[3] = {rng_uniform(d, -1, 1), rng_uniform(d, -1, 1), rng_uniform(d, -1, 1)};
@@ -86,8 +85,8 @@ static void make_planar(case_t *c, rng_t *d)
         rotation_about(0, 0, 1, rng_uniform(d, 0, 6), spin);
         rotation_times(rot, spin, all);
         shape_turn(s, all);
-        shape_move(s, rot[2] * at[2] + k * (rot[0] * at[0] + rot[1] * at[1]), rot[5] * at[2] + k * (rot[3] * at[0] + rot[4] * at[1]),
-                   rot[8] * at[2] + k * (rot[6] * at[0] + rot[7] * at[1]));
+        for (int i = 0; i < 3; i++)
+            s->pos[i] = (ccd_real_t)(rot[3 * i + 2] * at[2] + k * (rot[3 * i] * at[0] + rot[3 * i + 1] * at[1]));
         prism[k] = *s;
         prism[k].verts = high[k];
         prism[k].nverts = 2 * s->nverts;
@@ -99,7 +98,7 @@ static void make_planar(case_t *c, rng_t *d)
     c->pair.truth = truth_depth(&prism[0], &prism[1]);
 }
 
-static void make(case_t *c, int call, int i)
+static void make_case(case_t *c, int call, int i)
 {
     static const int categories[] = {CATEGORY_GENERIC, CATEGORY_SHALLOW3, CATEGORY_GENERIC, CATEGORY_APART};
     rng_t d = rng(5000, (uint64_t)i);
@@ -116,9 +115,9 @@ static void make(case_t *c, int call, int i)
         c->criteria.truth = truth_along(&c->pair.a, &c->pair.b, c->dir);
 }
 
-/* A state that no query of this pair left: bytes; numbers of every size, or of ordinary size, and
- * the small integers that mean something at the end. */
-static void strange_state(int kind, ccd_warm_t *warm)
+/* Makes a state that no query returns: random bytes; numbers of any size, or of usual size, with small integers in
+ * the fields at the end. */
+static void make_random_state(int kind, ccd_warm_t *warm)
 {
     static const double values[] = {0, 1, -1, 1e-300, 1e300, -1e300, 0.5, 1e-9, HUGE_VAL, NAN, 0.3, -0.7};
     unsigned char *bytes = (unsigned char *)warm;
@@ -135,93 +134,92 @@ static void strange_state(int kind, ccd_warm_t *warm)
     }
 }
 
-/* --- what is asked ------------------------------------------------------------------- */
+/* --- states -------------------------------------------------------------------------- */
 
 typedef struct {
-    unsigned long first, again, own, flipped; /* calls: of hits cold and asked again; of all */
-    int hits, apart, limited;
+    unsigned long cold, warm;   /* support calls of the hits */
+    unsigned long own, flipped; /* support calls of all pairs, from their own and the flipped state */
+    int hits, different, limited;
 } count_t;
 
-/* One pair from every kind of state; other: that of the pair before. */
-static void every_state(case_t *c, ccd_warm_t *other, count_t *n)
+/* Runs one pair from every kind of state; other: the state of the pair before. */
+static void run_from_every_state(case_t *c, ccd_warm_t *other, count_t *n)
 {
     ccd_warm_t none, warm, copy;
     memset(&none, 0, sizeof none);
     memset(&warm, 0, sizeof warm);
-    answer_t cold = answer(c, 0, &warm, "a cold state");
-    answer_t x = ask_pair(c, 0, NULL);
+    answer_t cold = run_judged(c, 0, &warm, "a cold state");
+    answer_t x = run_unjudged(c, 0, NULL);
     CHECK(same(&x, &cold), "%s without a state", c->call.name);
-    x = answer(c, 1, NULL, "no state, swapped");
+    x = run_judged(c, 1, NULL, "no state, swapped");
     copy = warm;
-    answer_t y = ask_pair(c, 1, &copy);
+    answer_t y = run_unjudged(c, 1, &copy);
     if (c->call.call == CALL_LOCAL && x.code == CCD_HIT)
         CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->criteria.tol, "unflipped: %g, cold %g", y.depth, x.depth);
     if (cold.code == CCD_HIT && c->criteria.truth.lower > 0) {
         n->hits++;
-        n->first += cost(c, 0, &none);
-        n->again += cost(c, 0, &warm);
+        n->cold += cost(c, 0, &none);
+        n->warm += cost(c, 0, &warm);
     }
     copy = warm;
-    x = answer(c, 0, &copy, "its own state");
-    y = ask_pair(c, 0, &warm);
+    x = run_judged(c, 0, &copy, "its own state");
+    y = run_unjudged(c, 0, &warm);
     CHECK(same(&x, &y) && same_bits(&warm, &copy, sizeof warm), "%s: a copied state", c->call.name);
     unsigned long own = cost(c, 0, &warm);
-    x = ask_pair(c, 0, &copy);
+    x = run_unjudged(c, 0, &copy);
     copy = warm;
     OURS(ccdWarmFlip)(&copy);
     unsigned long flipped = cost(c, 1, &copy);
-    y = answer(c, 1, &copy, "a flipped state");
+    y = run_judged(c, 1, &copy, "a flipped state");
     n->own += own;
     n->flipped += flipped;
-    n->apart += own != flipped || fabs(x.depth - y.depth) > 64 * real_eps() * largest_coordinate(&c->pair.a, &c->pair.b);
-    answer(c, 0, other, "a foreign state");
+    n->different += own != flipped || fabs(x.depth - y.depth) > 64 * real_eps() * largest_coordinate(&c->pair.a, &c->pair.b);
+    run_judged(c, 0, other, "a foreign state");
     *other = warm;
     for (int k = 0; k < 6; k++) {
-        strange_state(k % 3, &copy);
-        answer(c, 0, &copy, "a strange state");
-        answer(c, 0, &copy, "the state after a strange state");
+        make_random_state(k % 3, &copy);
+        run_judged(c, 0, &copy, "a random state");
+        run_judged(c, 0, &copy, "the state after a random state");
     }
     n->limited += c->limited;
 }
 
-static void from_states(int ask)
+static void check_states(int call)
 {
     static case_t c;
+    const char *name = call_table[call].name;
     ccd_warm_t other;
     count_t n;
     memset(&other, 0, sizeof other);
     memset(&n, 0, sizeof n);
     for (int i = 0; i < pairs; i++) {
-        make(&c, ask, i);
-        every_state(&c, &other, &n);
+        make_case(&c, call, i);
+        run_from_every_state(&c, &other, &n);
     }
-    printf("%s: %d hits, %.1f supports, %.1f when asked again; from a flipped state %.2f for %.2f, %d differ; %d pairs at the cap\n",
-           call_table[ask].name, n.hits, n.first / 2. / n.hits, n.again / 2. / n.hits, n.flipped / 2. / pairs, n.own / 2. / pairs, n.apart,
-           n.limited);
     if (pairs < PAIRS)
-        return; /* few pairs tell no costs */
-    /* Of a distance another of two ties is asked first: 5 % more. In single precision more are ties. */
-    CHECK(100 * n.flipped <= (ask == CALL_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103) * n.own, "%s: a flipped state is worth less", call_table[ask].name);
-    /* A portal's first directions are turned the same way round in the mirror: few walks differ. */
-    if (ask == CALL_LOCAL || ask == CALL_PLANAR)
-        CHECK(n.apart <= PAIRS / 20, "%s: %d differ", call_table[ask].name, n.apart);
-    /* A state is one direction: a depth along another gains nothing by it. */
-    if (ask == CALL_LOCAL)
-        CHECK(10 * n.again <= 7 * n.first, "%s: asked again", call_table[ask].name);
-    /* The paper's method halves its way to round minima: it says so where others are long done. */
-    CHECK(n.limited <= (ask == CALL_INCREMENTAL ? PAIRS / 16 : PAIRS / 200), "%s: %d pairs at the cap", call_table[ask].name, n.limited);
-    CHECK(n.hits > PAIRS / 4, "%s: %d hits", call_table[ask].name, n.hits);
+        return; /* too few for averages */
+    /* A flipped distance resolves ties differently: 5 % more. In single precision there are more ties. */
+    const unsigned long most = call == CALL_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103;
+    CHECK(100 * n.flipped <= most * n.own, "%s: %lu support calls, %lu from flipped states", name, n.own, n.flipped);
+    /* A portal's first directions are mirrored with the pair: few searches differ. */
+    if (call == CALL_LOCAL || call == CALL_PLANAR)
+        CHECK(n.different <= PAIRS / 20, "%s: %d of %d differ from a flipped state", name, n.different, PAIRS);
+    if (call == CALL_LOCAL)
+        CHECK(10 * n.warm <= 7 * n.cold, "%s: %lu support calls cold, %lu warm", name, n.cold, n.warm);
+    /* The incremental method of the paper converges slowly to minima of round objects. */
+    CHECK(n.limited <= (call == CALL_INCREMENTAL ? PAIRS / 16 : PAIRS / 200),
+          "%s: %d pairs at the support limit", name, n.limited);
+    CHECK(n.hits > PAIRS / 4, "%s: %d hits", name, n.hits);
 }
 
-/* A tilted plate sinks through a slab, a millimetre a frame. The least depth changes sides half
- * through; the local search keeps the side of its state, and a depth along a way that way,
- * until the two are apart. */
-static void sides(void)
+/* Lowers a tilted plate through a slab by 1 mm a frame. The least depth changes sides half way; the local search
+ * stays on the side of its state, and a depth along a direction on that side. */
+static void check_sides(void)
 {
     shape_t slab = shape_box(2, 2, 0.05), plate = shape_box(0.25, 0.25, 0.01);
     const ccd_vec3_t up = {{0, 0, 1}};
     double rot[9];
-    int kept = 0;
+    int frames_up = 0;
     ccd_warm_t warm[5];
     memset(warm, 0, sizeof warm);
     ccd_t ccd = shape_query();
@@ -229,7 +227,7 @@ static void sides(void)
     rotation_about(1, 2, 0.3, 0.02, rot);
     shape_turn(&plate, rot);
     for (int frame = 0; frame < 120; frame++) {
-        const double depth = 0.001 * frame + 0.0061; /* the plate's corners are 5.6 mm lower than its middle */
+        const double depth = 0.001 * frame + 0.0061; /* the plate's lowest corner is 5.6 mm below its center */
         ccd_penetration_t local, along, minimum;
         ccd_distance_t distance;
         ccd_real_t mpr;
@@ -239,21 +237,25 @@ static void sides(void)
         CHECK(OURS(ccdPenetrationAlong)(&slab, &plate, &ccd, &up, &warm[1], CCD_WANT_ALL, &along) == CCD_HIT, "frame %d", frame);
         CHECK(OURS(ccdPenetrationProven)(&slab, &plate, &ccd, &warm[2], CCD_WANT_ALL, &minimum) == CCD_HIT, "frame %d", frame);
         CHECK(OURS(ccdMPRPenetrationWarm)(&slab, &plate, &ccd, &warm[3], &mpr, &dir, &pos) == 0, "frame %d", frame);
-        CHECK(OURS(ccdSignedDistance)(&slab, &plate, &ccd, 0, 0, 0, &warm[4], CCD_WANT_ALL, &distance) == CCD_HIT, "frame %d", frame);
-        CHECK(local.dir.v[2] > CCD_REAL(0.99) && fabs((double)local.depth - depth) < 1e-3, "local: %g at %g", (double)local.depth, depth);
-        CHECK(along.dir.v[2] > CCD_REAL(0.99) && fabs((double)along.depth - depth) < 1e-3, "along: %g at %g", (double)along.depth, depth);
-        CHECK((dir.v[2] > 0) == (minimum.dir.v[2] > 0) && (distance.normal.v[2] > 0) == (minimum.dir.v[2] > 0), "frame %d: sides", frame);
-        kept += minimum.dir.v[2] > 0;
+        CHECK(OURS(ccdSignedDistance)(&slab, &plate, &ccd, 0, 0, 0, &warm[4], CCD_WANT_ALL, &distance) == CCD_HIT,
+              "frame %d", frame);
+        CHECK(local.dir.v[2] > CCD_REAL(0.99) && fabs((double)local.depth - depth) < 1e-3,
+              "local: %g at %g", (double)local.depth, depth);
+        CHECK(along.dir.v[2] > CCD_REAL(0.99) && fabs((double)along.depth - depth) < 1e-3,
+              "along: %g at %g", (double)along.depth, depth);
+        CHECK((dir.v[2] > 0) == (minimum.dir.v[2] > 0) && (distance.normal.v[2] > 0) == (minimum.dir.v[2] > 0),
+              "frame %d: sides", frame);
+        frames_up += minimum.dir.v[2] > 0;
     }
-    CHECK(kept == 60 || kept == 61, "%d frames up", kept);
+    CHECK(frames_up == 60 || frames_up == 61, "%d frames up", frames_up);
 }
 
 int main(int argc, char **argv)
 {
     pairs = argc > 1 ? atoi(argv[1]) : pairs;
     catch_crashes();
-    sides();
-    for (size_t i = 0; i < sizeof asks / sizeof *asks; i++)
-        from_states(asks[i]);
+    check_sides();
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
+        check_states(calls[i]);
     return checks_end();
 }

@@ -127,8 +127,9 @@ static void results_are_those_of_c()
                        ccdPenetrationPlanar(o1, o2, &c, &c_dir, &c_warm, all, &out), out);
 
             ccd_distance_t away;
-            int code = ccdSignedDistance(o1, o2, &c, CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5), &c_warm, all, &away);
-            const ccd::Distance distance = ccd::signed_distance(a, b, settings, {CCD_REAL(0.1), CCD_REAL(0.05), CCD_REAL(0.5)}, &warm);
+            const ccd::Real m1 = CCD_REAL(0.1), m2 = CCD_REAL(0.05), max = CCD_REAL(0.5);
+            int code = ccdSignedDistance(o1, o2, &c, m1, m2, max, &c_warm, all, &away);
+            const ccd::Distance distance = ccd::signed_distance(a, b, settings, {m1, m2, max}, &warm);
             CHECK(int(distance.status) == code && distance, "distance");
             CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
                       same(distance.normal, away.normal) && same(distance.point1, away.point1) &&

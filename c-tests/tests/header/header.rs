@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! include/ccd/warm.h and paper.h are what cbindgen makes of src/ffi: no drift.
+//! Checks that include/ccd/warm.h and paper.h are those that cbindgen generates from src/ffi.
 //!
-//! cbindgen sorts what it finds in a file: macros, structs, functions. So that the header reads
-//! from the top, each of its sections is a file of its own, whose first comment is the section's
-//! heading.
+//! cbindgen sorts the items of a file: macros, structs, functions. For a better order each section of
+//! a header is a file, whose first comment is the section's heading.
 //!
-//! `WRITE_HEADER=1 cargo test --test header` writes them anew.
+//! `WRITE_HEADER=1 cargo test --test header` writes the headers.
 
 use std::path::Path;
 
-/// The files of src/ffi that a header is made of: its head, and its sections in their order.
+/// Header and the files of src/ffi that it is generated from: its head and its sections.
 struct Header {
     name: &'static str,
     guard: &'static str,
@@ -48,14 +47,14 @@ const HEADERS: [Header; 2] = [
     },
 ];
 
-/// A file's first comment as one of C.
+/// Converts a file's first comment to C.
 fn heading(source: &str) -> String {
     let lines = source.lines().filter_map(|line| line.strip_prefix("//!"));
     let text = lines.collect::<Vec<_>>().join("\n *");
     format!("/*{text} */\n")
 }
 
-/// What cbindgen makes of a file, without a frame. Negative macros get their parentheses.
+/// Runs cbindgen on a file, without a frame. Adds parentheses to negative macros.
 fn section(path: &Path) -> String {
     let mut config = cbindgen::Config {
         language: cbindgen::Language::C,
@@ -73,19 +72,19 @@ fn section(path: &Path) -> String {
     config.export.rename.insert("Real".into(), "ccd_real_t".into());
     let mut out = Vec::new();
     cbindgen::Builder::new().with_config(config).with_src(path).generate().expect("cbindgen").write(&mut out);
-    let made = String::from_utf8(out).expect("UTF-8");
-    // A type is called by one name, in whatever file it is.
-    let made = made.replace(" struct ccd_", " ccd_").replace("(struct ccd_", "(ccd_");
-    let made = made.replace("typedef ccd_", "typedef struct ccd_");
-    // A pointer to a function of a type of ccd.h's may be NULL, as every such one in C.
-    let (made, mut declared) = (made.replace("struct Option_ccd_", "ccd_"), false);
-    let made = made.lines().filter(|line| {
+    let text = String::from_utf8(out).expect("UTF-8");
+    // A type has one name in every file.
+    let text = text.replace(" struct ccd_", " ccd_").replace("(struct ccd_", "(ccd_");
+    let text = text.replace("typedef ccd_", "typedef struct ccd_");
+    // A callback of ccd.h may be NULL, as every pointer to a function in C.
+    let (text, mut declared) = (text.replace("struct Option_ccd_", "ccd_"), false);
+    let text = text.lines().filter(|line| {
         let skip = line.contains(" Option_ccd_") || declared && line.is_empty();
         declared = skip;
         !skip
     });
-    let made = made.collect::<Vec<_>>().join("\n");
-    let lines = made.trim().lines().map(|line| {
+    let text = text.collect::<Vec<_>>().join("\n");
+    let lines = text.trim().lines().map(|line| {
         let macro_value = line.strip_prefix("#define ").and_then(|l| l.split_once(" -"));
         match macro_value {
             Some((name, value)) => format!("#define {name} (-{value})"),
@@ -119,16 +118,16 @@ fn generated(root: &Path, header: &Header) -> String {
 }
 
 #[test]
-fn headers_are_what_the_source_says() {
+fn headers_match_the_source() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for header in &HEADERS {
         let path = root.join("include/ccd").join(header.name);
-        let fresh = generated(root, header);
+        let generated = generated(root, header);
         if std::env::var_os("WRITE_HEADER").is_some() {
-            std::fs::write(&path, &fresh).expect("write the header");
+            std::fs::write(&path, &generated).expect("write the header");
         }
         let committed = std::fs::read_to_string(&path).unwrap_or_default();
         let name = header.name;
-        assert!(committed == fresh, "{name} is stale: WRITE_HEADER=1 cargo test --test header");
+        assert!(committed == generated, "{name} is stale: WRITE_HEADER=1 cargo test --test header");
     }
 }

@@ -547,8 +547,7 @@ fn oldest_rust_builds_the_library() {
         build.args(["--features", "single"]);
     }
     must_succeed(&mut build, "cargo");
-    // It proves fewer bounds than a newer one, and builds Debian's packages. The contract test
-    // `no_panic_is_linked` names the function that panics.
+    // It proves fewer bounds than a newer one, and builds Debian's packages.
     let symbols = run(harness::binutils("nm"), &[&output_dir().join("oldest-rust/release/libccd.so")]);
     assert!(symbols.contains(" t "), "no local symbols");
     assert!(!symbols.contains("panicking"), "a panic is linked by Rust {version}");
