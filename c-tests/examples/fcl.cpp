@@ -41,9 +41,9 @@ int main()
         data.request.num_max_contacts = 100;
         manager.collide(&data, ccd_fcl::CollisionFunction<double>);
 
-        fcl::DistanceResultd between; /* below 0 where they overlap */
+        fcl::DistanceResultd between; /* negative for an overlap */
         ccd_fcl::distance(&box, &ball, fcl::DistanceRequestd(), between, cache);
-        cache.next_frame(); /* lets go of pairs no longer met */
+        cache.next_frame(); /* removes pairs that were not queried */
 
         std::printf("frame %d: %zu contacts, box and ball %.3f m apart\n", frame, data.result.numContacts(), between.min_distance);
         for (std::size_t i = 0; i < data.result.numContacts(); i++) {

@@ -1,9 +1,9 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How to keep the states of pairs in C: a small hash table, to be copied. Bodies have numbers; a
- * pair is asked in the order of these, the lower first, so that its state always fits. The world
- * around it: boxes on circles, of which now these and now those meet. */
+/* Stores the states of pairs in C: a small hash table, to be copied. Bodies have indices; a pair is
+ * queried with the lower index first, which is the order of its state. The world is one of boxes that
+ * move on circles. */
 
 #include <ccd/warm.h>
 #include <math.h>
@@ -12,18 +12,18 @@
 
 typedef struct {
     unsigned first, second;
-    unsigned long frame; /* when it was asked for last; 0: an empty place */
+    unsigned long frame; /* of the last query; 0: an empty slot */
     ccd_warm_t warm;
 } slot_t;
 
 typedef struct { /* all zeros: empty */
     slot_t *entry;
-    size_t size, used; /* a power of two, at least twice the used ones */
+    size_t size, used; /* size: a power of two, at least 2 * used */
     unsigned long frame;
 } states_t;
 
-/* The place of a pair, or the empty one where it belongs. */
-static slot_t *place(slot_t *entry, size_t size, unsigned first, unsigned second)
+/* Returns the slot of a pair, or the empty one for it. */
+static slot_t *find_slot(slot_t *entry, size_t size, unsigned first, unsigned second)
 {
     size_t i = (first * 2654435761u ^ second * 2246822519u) >> 7;
     for (i &= size - 1; entry[i].frame; i = (i + 1) & (size - 1))
@@ -32,8 +32,8 @@ static slot_t *place(slot_t *entry, size_t size, unsigned first, unsigned second
     return &entry[i];
 }
 
-/* Lets go of pairs that were asked for neither in this frame nor in the last, and makes room. */
-static int make_room(states_t *s)
+/* Removes pairs without a query in this frame and the last, and resizes the table. */
+static int resize(states_t *s)
 {
     size_t kept = 0, size = 64;
     slot_t *entry;
@@ -41,12 +41,12 @@ static int make_room(states_t *s)
         kept += s->entry[i].frame && s->entry[i].frame + 1 >= s->frame;
     while (size < 4 * (kept + 1))
         size *= 2;
-    entry = calloc(size, sizeof *entry); /* zeros: empty places, cold states */
+    entry = calloc(size, sizeof *entry); /* zeros: empty slots, cold states */
     if (!entry)
         return 0;
     for (size_t i = 0; i < s->size; i++)
         if (s->entry[i].frame && s->entry[i].frame + 1 >= s->frame)
-            *place(entry, size, s->entry[i].first, s->entry[i].second) = s->entry[i];
+            *find_slot(entry, size, s->entry[i].first, s->entry[i].second) = s->entry[i];
     free(s->entry);
     s->entry = entry;
     s->size = size;
@@ -54,13 +54,13 @@ static int make_room(states_t *s)
     return 1;
 }
 
-/* The state of a pair, first < second, good until the next call; cold where it is new. NULL where
- * there is no memory, which is cold too. */
+/* Returns the state of a pair, first < second, valid until the next call; cold where the pair is new.
+ * NULL without memory, which is cold too. */
 static ccd_warm_t *state_of(states_t *s, unsigned first, unsigned second)
 {
-    if (2 * (s->used + 1) > s->size && !make_room(s))
+    if (2 * (s->used + 1) > s->size && !resize(s))
         return NULL;
-    slot_t *e = place(s->entry, s->size, first, second);
+    slot_t *e = find_slot(s->entry, s->size, first, second);
     s->used += !e->frame;
     e->first = first;
     e->second = second;
@@ -93,7 +93,7 @@ int main(void)
     ccd.support1 = ccd.support2 = support;
     ccd.center1 = ccd.center2 = center;
     for (states.frame = 1; states.frame <= FRAMES; states.frame++) {
-        unsigned long asked = 0, overlap = 0, cold = 0;
+        unsigned long near = 0, overlap = 0, cold = 0;
         calls = 0;
         for (unsigned i = 0; i < BODIES; i++) {
             const double turn = 0.7 * i + 0.0002 * (i % 9 + 1) * states.frame, radius = 0.5 + 0.4 * (i % 7);
@@ -105,17 +105,17 @@ int main(void)
         for (unsigned i = 0; i < BODIES; i++)
             for (unsigned j = i + 1; j < BODIES; j++) {
                 ccd_penetration_t hit;
-                if (ccdVec3Dist2(&body[i].pos, &body[j].pos) > 1) /* a broad phase's part */
+                if (ccdVec3Dist2(&body[i].pos, &body[j].pos) > 1) /* a broad phase */
                     continue;
-                asked++;
+                near++;
                 overlap += ccdPenetration(&body[i], &body[j], &ccd, state_of(&states, i, j), 0, &hit) >= 0;
-                cold -= calls; /* what the same would cost without states */
+                cold -= calls; /* the same without states */
                 ccdPenetration(&body[i], &body[j], &ccd, NULL, 0, &hit);
                 cold += calls;
             }
         if (states.frame % 20 == 0)
-            printf("frame %lu: %lu pairs near, %lu overlap, %.1f callbacks a pair, %.1f without states, %lu places\n",
-                   states.frame, asked, overlap, (double)(calls - cold) / (double)asked, (double)cold / (double)asked,
+            printf("frame %lu: %lu pairs near, %lu overlap, %.1f callbacks a pair, %.1f without states, %lu slots\n",
+                   states.frame, near, overlap, (double)(calls - cold) / (double)near, (double)cold / (double)near,
                    (unsigned long)states.size);
     }
     free(states.entry);

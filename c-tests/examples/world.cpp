@@ -10,7 +10,7 @@
 #include <vector>
 
 using ccd::Real, ccd::Vec3;
-struct Body { /* points, swept along x, y, z by half: the core; and a ball all around it */
+struct Body { /* points, swept along x, y, z by half: the core; with a ball around it */
     Vec3 pos, half;
     Real radius = 0, speed = 0;
     std::vector<Vec3> points{{0, 0, 0}};
@@ -38,24 +38,24 @@ int main()
     std::vector<ccd::ManifoldCache> memory(body.size() * body.size());
     for (int frame = 0; frame < 60; frame++) {
         int contacts = 0;
-        Real nearest = std::numeric_limits<Real>::infinity();
-        for (std::size_t i = 1; i < body.size(); i++) /* they fall */
+        Real closest = std::numeric_limits<Real>::infinity();
+        for (std::size_t i = 1; i < body.size(); i++) /* gravity */
             body[i].pos.z += (body[i].speed -= CCD_REAL(9.81) / 60) / 60;
         for (std::size_t i = 0; i < body.size(); i++)
             for (std::size_t j = i + 1; j < body.size(); j++) {
                 Body &a = body[i], &b = body[j];
                 const auto d = ccd::signed_distance(a, b, {CCD_REAL(1e-5)}, {a.radius, b.radius}, &warm[i * body.size() + j]);
                 if (d.status != ccd::Status::hit) {
-                    nearest = std::min(nearest, d.distance); /* between d.point1 and d.point2 */
+                    closest = std::min(closest, d.distance); /* between d.point1 and d.point2 */
                     continue;
                 }
                 std::array<ccd::Contact, 4> contact; /* of the cores */
                 contacts += ccd::contacts(a, b, d.normal, CCD_REAL(1e-3), contact, &memory[i * body.size() + j]);
-                const Vec3 p = b.pos, n = d.normal; /* what a solver would do with the contacts */
+                const Vec3 p = b.pos, n = d.normal; /* in place of a contact solver */
                 b.pos = {p.x - d.distance * n.x, p.y - d.distance * n.y, p.z - d.distance * n.z};
                 b.speed = 0;
             }
         if (frame % 10 == 9)
-            std::printf("frame %d: %d contacts, other pairs are %.2f m apart\n", frame, contacts, double(nearest));
+            std::printf("frame %d: %d contacts, other pairs are %.2f m apart\n", frame, contacts, double(closest));
     }
 }

@@ -5,7 +5,7 @@
 
 use ccd::{Contact, DistanceOptions, ManifoldCache, Real, Settings, Shape, Warm};
 
-/// Points, swept along x, y, z by `half`: the core; and a ball of `radius` all around it.
+/// Points, swept along x, y, z by `half`: the core; with a ball of `radius` around it.
 struct Body {
     pos: [Real; 3],
     half: [Real; 3],
@@ -44,7 +44,7 @@ fn main() -> Result<(), ccd::Error> {
     ];
     let mut states = [[(Warm::default(), ManifoldCache::default()); 4]; 4];
     for frame in 0..60 {
-        let (mut count, mut nearest) = (0, Real::INFINITY);
+        let (mut count, mut closest) = (0, Real::INFINITY);
         for body in &mut bodies[1..] {
             body.speed -= 9.81 / 60.0;
             body.pos[2] += body.speed / 60.0;
@@ -56,19 +56,19 @@ fn main() -> Result<(), ccd::Error> {
                 let margins = DistanceOptions { margin1: a.radius, margin2: b.radius, ..DistanceOptions::default() };
                 let d = ccd::signed_distance(a, b, &Settings::new(1e-5), &margins, Some(warm))?;
                 if d.distance_upper > 0.0 {
-                    nearest = nearest.min(d.distance); // between d.point1 and d.point2
+                    closest = closest.min(d.distance); // between d.point1 and d.point2
                     continue;
                 }
                 let mut room = [Contact::default(); 4]; // of the cores
                 count += ccd::contacts(a, b, d.normal, 1e-3, Some(manifold), &mut room)?.len();
-                // What a solver would do with the contacts.
+                // In place of a contact solver.
                 let b = &mut bodies[j];
                 b.pos = std::array::from_fn(|k| b.pos[k] - d.distance * d.normal[k]);
                 b.speed = 0.0;
             }
         }
         if frame % 10 == 9 {
-            println!("frame {frame}: {count} contacts, other pairs are {nearest:.2} m apart");
+            println!("frame {frame}: {count} contacts, other pairs are {closest:.2} m apart");
         }
     }
     Ok(())

@@ -1,10 +1,9 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prints the value of every macro and inline function of the headers, over random and
- * special numbers, bit for bit. Compiled against libccd's headers and against ours: the
- * two must print the same. C99 and C++11; the driver checks that no name is missing. (That the library
- * has the same layouts is asserted in src/ffi/types.rs.) */
+/* Prints the values of every macro and inline function of the headers, for random and special numbers, bit
+ * for bit. Compiled with libccd's headers and with this library's, as C99 and C++11: the driver compares the
+ * output, and checks that no name is missing. (src/ffi/types.rs asserts the layouts.) */
 
 #include <ccd/ccd.h>
 #include <ccd/ccd_export.h>
@@ -14,52 +13,51 @@
 #include <ccd/vec3.h>
 #include <stdio.h>
 
-/* What a consumer may rely on without including it: stdlib.h, math.h, float.h, stddef.h. */
+/* Headers that ccd.h includes: stdlib.h, math.h, float.h, stddef.h. */
 static size_t included = sizeof(ptrdiff_t) + DBL_DIG + RAND_MAX;
 
-static void show(const char *what, ccd_real_t value)
+static void print_real(const char *name, ccd_real_t value)
 {
     if (value != value)
-        printf("%s nan\n", what);
+        printf("%s nan\n", name);
     else
-        printf("%s %a\n", what, (double)value);
+        printf("%s %a\n", name, (double)value);
 }
 
-static void show_vec3(const char *what, const ccd_vec3_t *v)
+static void print_vec3(const char *name, const ccd_vec3_t *v)
 {
-    show(what, ccdVec3X(v));
-    show(what, ccdVec3Y(v));
-    show(what, ccdVec3Z(v));
+    print_real(name, ccdVec3X(v));
+    print_real(name, ccdVec3Y(v));
+    print_real(name, ccdVec3Z(v));
 }
 
-static void show_quat(const char *what, const ccd_quat_t *q)
+static void print_quat(const char *name, const ccd_quat_t *q)
 {
     for (int i = 0; i < 4; i++)
-        show(what, q->q[i]);
+        print_real(name, q->q[i]);
 }
 
-static ccd_real_t number(void)
+static ccd_real_t random_number(void)
 {
     static const ccd_real_t special[] = {0, 1, -1, 2, CCD_EPS, CCD_EPS / 2, -CCD_EPS, 2 * CCD_EPS, 1 + CCD_EPS, CCD_REAL_MAX,
-                                         -CCD_REAL_MAX, CCD_REAL(1e-20), CCD_REAL(1e20), CCD_REAL(0.1)};
+                                         -CCD_REAL_MAX, CCD_REAL(1e-20), CCD_REAL(1e20), CCD_REAL(0.1),
+                                         (ccd_real_t)HUGE_VAL, -(ccd_real_t)HUGE_VAL, (ccd_real_t)NAN};
     int kind = rand() % 4;
     ccd_real_t unit = (ccd_real_t)(rand() % 20001 - 10000) / 10000;
-    if (kind == 0) {
-        int i = rand() % 17;
-        return i < 14 ? special[i] : i == 14 ? (ccd_real_t)HUGE_VAL : i == 15 ? -(ccd_real_t)HUGE_VAL : (ccd_real_t)NAN;
-    }
+    if (kind == 0)
+        return special[rand() % 17];
     return kind == 1 ? unit * (ccd_real_t)pow(10, rand() % 20 - 10) : unit;
 }
 
-static void vec3(ccd_vec3_t *v)
+static void set_random_vec3(ccd_vec3_t *v)
 {
-    ccd_real_t x = number(), y = number(), z = number();
+    ccd_real_t x = random_number(), y = random_number(), z = random_number();
     ccdVec3Set(v, x, y, z);
 }
 
-static void quat(ccd_quat_t *q)
+static void set_random_quat(ccd_quat_t *q)
 {
-    ccd_real_t x = number(), y = number(), z = number(), w = number();
+    ccd_real_t x = random_number(), y = random_number(), z = random_number(), w = random_number();
     ccdQuatSet(q, x, y, z, w);
 }
 
@@ -75,7 +73,7 @@ static void center(const void *obj, ccd_vec3_t *c)
     ccdVec3Copy(c, ccd_vec3_origin);
 }
 
-/* Declared once more: another type is an error. */
+/* Redeclarations: another type is an error. */
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -108,9 +106,9 @@ _ccd_inline int inlined(void) { return 5; }
 CCD_EXPORT int exported(void);
 CCD_EXPORT int exported(void) { return 7; }
 
-/* What a call leaves in c, in r. */
-#define VEC3(call) (call, show_vec3(#call, &c))
-#define QUAT(call) (call, show_quat(#call, &r))
+/* Print the result of a call in c or r. */
+#define VEC3(call) (call, print_vec3(#call, &c))
+#define QUAT(call) (call, print_quat(#call, &r))
 
 int main(void)
 {
@@ -121,11 +119,11 @@ int main(void)
     printf("%d %d %d %d %d\n", ccd.first_dir == first_dir_fn, ccd.support1 == NULL, ccd.support2 == NULL,
            ccd.center1 == NULL, ccd.center2 == NULL);
     ccd.first_dir(NULL, NULL, &outer.member);
-    show_vec3("ccdFirstDirDefault", &outer.member);
+    print_vec3("ccdFirstDirDefault", &outer.member);
     printf("%lu\n", ccd.max_iterations);
-    show("epa_tolerance", ccd.epa_tolerance);
-    show("mpr_tolerance", ccd.mpr_tolerance);
-    show("dist_tolerance", ccd.dist_tolerance);
+    print_real("epa_tolerance", ccd.epa_tolerance);
+    print_real("mpr_tolerance", ccd.mpr_tolerance);
+    print_real("dist_tolerance", ccd.dist_tolerance);
     tagged = ccd;
     tagged.support1 = support_fn;
     tagged.center1 = center_fn;
@@ -134,8 +132,8 @@ int main(void)
     else
         return 1;
     printf("%d %d\n", tagged.support1 == NULL, tagged.center1 == NULL);
-    show_vec3("tagged", &tagged_vec3);
-    show_quat("tagged", &tagged_quat);
+    print_vec3("tagged", &tagged_vec3);
+    print_quat("tagged", &tagged_quat);
     printf("%lu %lu %d\n", (unsigned long)included, (unsigned long)ccd_offsetof(struct outer, member),
            (ccd_container_of(&outer.member, struct outer, member))->first);
     printf("%d %d\n", inlined(), exported());
@@ -145,11 +143,11 @@ int main(void)
            BYTES(epa_tolerance), BYTES(mpr_tolerance), BYTES(dist_tolerance));
     _ccd_prefetch(&outer);
     _ccd_prefetchw(&outer);
-    show("CCD_EPS", CCD_EPS);
-    show("CCD_REAL_MAX", CCD_REAL_MAX);
-    show("CCD_ZERO", CCD_ZERO);
-    show("CCD_ONE", CCD_ONE);
-    show("CCD_REAL", CCD_REAL(0.1));
+    print_real("CCD_EPS", CCD_EPS);
+    print_real("CCD_REAL_MAX", CCD_REAL_MAX);
+    print_real("CCD_ZERO", CCD_ZERO);
+    print_real("CCD_ONE", CCD_ONE);
+    print_real("CCD_REAL", CCD_REAL(0.1));
     printf("%d %d %d\n", (int)sizeof(CCD_REAL(0.1)), (int)sizeof(CCD_EPS), (int)sizeof(ccd_real_t));
 #ifdef CCD_SINGLE
     printf("CCD_SINGLE\n");
@@ -160,29 +158,29 @@ int main(void)
 
     srand(1);
     for (round = 0; round < 20000; round++) {
-        ccd_real_t x = number(), y = rand() % 3 ? number() : x * (1 + (ccd_real_t)(rand() % 5 - 2) * CCD_EPS);
+        ccd_real_t x = random_number(), y = rand() % 3 ? random_number() : x * (1 + (ccd_real_t)(rand() % 5 - 2) * CCD_EPS);
         ccd_vec3_t a, b, c;
         ccd_quat_t p, q, r;
         CCD_VEC3(made, x, y, 3);
         CCD_QUAT(turned, x, y, 3, 4);
-        show_vec3("CCD_VEC3", &made);
-        show_quat("CCD_QUAT", &turned);
-        show("CCD_SQRT", CCD_SQRT(x));
-        show("CCD_FABS", CCD_FABS(x));
-        show("CCD_FMAX", CCD_FMAX(x, y));
-        show("CCD_FMIN", CCD_FMIN(x, y));
+        print_vec3("CCD_VEC3", &made);
+        print_quat("CCD_QUAT", &turned);
+        print_real("CCD_SQRT", CCD_SQRT(x));
+        print_real("CCD_FABS", CCD_FABS(x));
+        print_real("CCD_FMAX", CCD_FMAX(x, y));
+        print_real("CCD_FMIN", CCD_FMIN(x, y));
         printf("%d %d %d\n", ccdSign(x), ccdIsZero(x), ccdEq(x, y));
 
-        vec3(&a);
-        vec3(&b);
+        set_random_vec3(&a);
+        set_random_vec3(&b);
         if (rand() % 2)
             ccdVec3Copy(&b, &a);
         if (rand() % 2)
             b.v[rand() % 3] *= 1 + (ccd_real_t)(rand() % 5 - 2) * CCD_EPS;
         printf("%d\n", ccdVec3Eq(&a, &b));
-        show("ccdVec3Len2", ccdVec3Len2(&a));
-        show("ccdVec3Dist2", ccdVec3Dist2(&a, &b));
-        show("ccdVec3Dot", ccdVec3Dot(&a, &b));
+        print_real("ccdVec3Len2", ccdVec3Len2(&a));
+        print_real("ccdVec3Dist2", ccdVec3Dist2(&a, &b));
+        print_real("ccdVec3Dot", ccdVec3Dot(&a, &b));
         ccdVec3Copy(&c, &a);
         VEC3(ccdVec3Sub(&c, &b));
         VEC3(ccdVec3Add(&c, &b));
@@ -192,10 +190,10 @@ int main(void)
         VEC3(ccdVec3Normalize(&c));
         VEC3(ccdVec3Cross(&c, &a, &b));
 
-        quat(&p);
-        quat(&q);
-        show("ccdQuatLen2", ccdQuatLen2(&p));
-        show("ccdQuatLen", ccdQuatLen(&p));
+        set_random_quat(&p);
+        set_random_quat(&q);
+        print_real("ccdQuatLen2", ccdQuatLen2(&p));
+        print_real("ccdQuatLen", ccdQuatLen(&p));
         ccdQuatCopy(&r, &p);
         QUAT(printf("%d\n", ccdQuatNormalize(&r)));
         QUAT(ccdQuatSetAngleAxis(&r, x, &a));
