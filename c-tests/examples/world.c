@@ -32,7 +32,7 @@ int main(void)
         { .pos = {{1, 0, 2}}, .half = {0, CCD_REAL(0.5), 0}, .radius = CCD_REAL(0.25) },
         { .pos = {{1, 2, 3}}, .points = 5, .point = {{{1, 0, 0}}, {{0, 1, 0}}, {{-1, 0, 0}}, {{0, -1, 0}}, {{0, 0, 1}}} }};
     static ccd_warm_t warm[BODIES][BODIES]; /* all zeros: cold */
-    static ccd_manifold_t memory[BODIES][BODIES]; /* of the contacts */
+    static ccd_manifold_cache_t cache[BODIES][BODIES]; /* of the contacts */
     ccd_contact_t contact[4];
     ccd_distance_t d;
     ccd_t ccd;
@@ -50,7 +50,7 @@ int main(void)
                     closest = fmin(closest, (double)d.distance); /* between d.point1 and d.point2 */
                     continue;
                 }
-                contacts += ccdContacts(a, b, &ccd, &d.normal, CCD_REAL(1e-3), &memory[i][j], contact, 4); /* of the cores */
+                contacts += ccdContacts(a, b, &ccd, &d.normal, CCD_REAL(1e-3), &cache[i][j], contact, 4); /* of the cores */
                 for (int k = 0; k < 3; k++) /* in place of a contact solver */
                     b->pos.v[k] -= d.distance * d.normal.v[k];
                 b->speed = 0;

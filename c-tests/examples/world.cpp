@@ -35,7 +35,7 @@ int main()
                            {{1, 0, 2}, {0, h, 0}, q},
                            {{1, 2, 3}, {}, 0, 0, {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}};
     std::vector<ccd::Warm> warm(body.size() * body.size());
-    std::vector<ccd::ManifoldCache> memory(body.size() * body.size());
+    std::vector<ccd::ManifoldCache> cache(body.size() * body.size());
     for (int frame = 0; frame < 60; frame++) {
         int contacts = 0;
         Real closest = std::numeric_limits<Real>::infinity();
@@ -50,7 +50,7 @@ int main()
                     continue;
                 }
                 std::array<ccd::Contact, 4> contact; /* of the cores */
-                contacts += ccd::contacts(a, b, d.normal, CCD_REAL(1e-3), contact, &memory[i * body.size() + j]);
+                contacts += ccd::contacts(a, b, d.normal, CCD_REAL(1e-3), contact, &cache[i * body.size() + j]);
                 const Vec3 p = b.pos, n = d.normal; /* in place of a contact solver */
                 b.pos = {p.x - d.distance * n.x, p.y - d.distance * n.y, p.z - d.distance * n.z};
                 b.speed = 0;

@@ -51,7 +51,7 @@ fn main() -> Result<(), ccd::Error> {
         }
         for i in 0..bodies.len() {
             for j in i + 1..bodies.len() {
-                let (warm, manifold) = &mut states[i][j];
+                let (warm, cache) = &mut states[i][j];
                 let (a, b) = (&bodies[i], &bodies[j]);
                 let margins = DistanceOptions { margin1: a.radius, margin2: b.radius, ..DistanceOptions::default() };
                 let d = ccd::signed_distance(a, b, &Settings::new(1e-5), &margins, Some(warm))?;
@@ -60,7 +60,7 @@ fn main() -> Result<(), ccd::Error> {
                     continue;
                 }
                 let mut room = [Contact::default(); 4]; // of the cores
-                count += ccd::contacts(a, b, d.normal, 1e-3, Some(manifold), &mut room)?.len();
+                count += ccd::contacts(a, b, d.normal, 1e-3, Some(cache), &mut room)?.len();
                 // In place of a contact solver.
                 let b = &mut bodies[j];
                 b.pos = std::array::from_fn(|k| b.pos[k] - d.distance * d.normal[k]);

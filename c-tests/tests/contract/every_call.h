@@ -83,7 +83,7 @@ static inline int store_result(const call_t *entry, int code, const results_t *r
 static inline int run_wanting(unsigned want, const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
 {
     const ccd_vec3_t up = {{0, 1, 0}};
-    ccd_manifold_cache_t memory;
+    ccd_manifold_cache_t cache;
     results_t results;
     ccd_warm_t warm;
     if (entry->number == PAIR_CALL_COUNT) {
@@ -91,10 +91,10 @@ static inline int run_wanting(unsigned want, const call_t *entry, const void *a,
         return 0;
     }
     memset(&warm, 0, sizeof warm);
-    memset(&memory, 0, sizeof memory);
+    memset(&cache, 0, sizeof cache);
     call_args_t args = valid_arguments(entry, &results);
     args.warm = &warm;
-    args.cache = &memory;
+    args.cache = &cache;
     args.want = want;
     args.depth = &out->depth;
     args.dir = &out->dir;

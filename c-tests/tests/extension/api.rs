@@ -226,13 +226,13 @@ fn compare_intersect_and_distance(
 
 fn compare_contacts(a: &Rounded, b: &Rounded, c: &ccd_t) {
     let mut room = [Contact::default(); 4];
-    let mut memory = ccd::ManifoldCache::default();
-    let found = ccd::contacts(a as Body, b as Body, DIR, 0.01, Some(&mut memory), &mut room).expect("valid input");
+    let mut cache = ccd::ManifoldCache::default();
+    let found = ccd::contacts(a as Body, b as Body, DIR, 0.01, Some(&mut cache), &mut room).expect("valid input");
     let (a, b) = (object(a), object(b));
     let mut out = [const { MaybeUninit::<ccd_contact_t>::uninit() }; 4];
-    let mut manifold = MaybeUninit::<ccd_manifold_cache_t>::zeroed();
+    let mut c_cache = MaybeUninit::<ccd_manifold_cache_t>::zeroed();
     // SAFETY: live objects of their types, memory for four contacts.
-    let count = unsafe { ccdContacts(a, b, c, &C_DIR, 0.01, manifold.as_mut_ptr(), out.as_mut_ptr().cast(), 4) };
+    let count = unsafe { ccdContacts(a, b, c, &C_DIR, 0.01, c_cache.as_mut_ptr(), out.as_mut_ptr().cast(), 4) };
     assert_eq!(found.len(), count as usize);
     for (contact, out) in found.iter().zip(out) {
         // SAFETY: one of the `count` contacts that were written.

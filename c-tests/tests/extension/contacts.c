@@ -698,12 +698,12 @@ static void check_cache(const char *what, shape_t body, int kinds)
 {
     for (int run = 0; run < 2 * kinds; run++) {
         const int kind = run % kinds, swaps = run >= kinds;
-        static ccd_manifold_cache_t memory;
+        static ccd_manifold_cache_t pair_cache;
         motion_t m = motion_of(kind, kind == ROLL ? pi / 2 : 0.46, kind == SPIN ? 0.02 : 2e-3);
         scene_t start = {.a = table(), .b = body, .slop = 1e-3};
         unsigned long cold = 0, warm = 0;
         contacts_t last;
-        memset(&memory, 0, sizeof memory);
+        memset(&pair_cache, 0, sizeof pair_cache);
         last.n = 0;
         draw_scene_pose(0);
         m.drift = kind == REST ? 0 : 0.05;
@@ -723,7 +723,7 @@ static void check_cache(const char *what, shape_t body, int kinds)
             cache = NULL;
             contacts_t none = contacts_at_most(&s, 4);
             cold += s.a.calls + s.b.calls;
-            cache = &memory;
+            cache = &pair_cache;
             contacts_t c = contacts_at_most(&s, 4);
             if (frame > 0)
                 warm += s.a.calls + s.b.calls;
@@ -760,11 +760,11 @@ static void tipping(void)
     static const double tilts[] = {0.3, 0.1, 0.02, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 5e-5, 0, 0, 1e-5, 1e-4, 1e-3, 5e-3, 0.1};
     static const double up[3] = {0, 0, 1};
     for (int i = 0; i < 400 / share; i++) {
-        static ccd_manifold_cache_t memory;
+        static ccd_manifold_cache_t pair_cache;
         const double angle = i % 3 ? uniform(0, 6.28) : i % 4 * 1.5708, slop = fmax(random_slop(), 64 * real_eps());
         const shape_t block = i % 3 ? prism(1, 3 + random_below(6), 0.4) : shape_box(0.5, 0.7, 0.3);
-        memset(&memory, 0, sizeof memory);
-        cache = &memory;
+        memset(&pair_cache, 0, sizeof pair_cache);
+        cache = &pair_cache;
         draw_scene_pose(1);
         for (int j = 0; j < (int)(sizeof tilts / sizeof *tilts); j++) {
             scene_t s = {.a = table(), .b = turned(block, cos(angle), sin(angle), 0, tilts[j]), .slop = slop};
@@ -779,10 +779,10 @@ static void tipping(void)
 static void arbitrary_caches(void)
 {
     for (int i = 0; i < 20000 / share; i++) {
-        static ccd_manifold_cache_t memory, good;
-        unsigned char *bytes = (unsigned char *)&memory;
+        static ccd_manifold_cache_t pair_cache, good;
+        unsigned char *bytes = (unsigned char *)&pair_cache;
         scene_t s;
-        memory = good;
+        pair_cache = good;
         s.slop = 1e-3;
         s.a = table();
         s.b = i % 3 == 0   ? at(shape_box(0.5, 0.6, 0.7), 0.1, 0.2, 0.69)
@@ -792,27 +792,27 @@ static void arbitrary_caches(void)
             place_randomly(&s, 1);
         else
             place(&s);
-        cache = &memory;
+        cache = &pair_cache;
         switch (i % 4) {
         case 0: /* random bytes */
-            for (size_t k = 0; k < sizeof memory; k++)
+            for (size_t k = 0; k < sizeof pair_cache; k++)
                 bytes[k] = (unsigned char)random_below(256);
             break;
         case 1: /* a valid cache with random bits */
             for (int j = 0; j < 1 + i % 7; j++)
-                bytes[random_below((int)sizeof memory)] ^= (unsigned char)(1 + random_below(255));
+                bytes[random_below((int)sizeof pair_cache)] ^= (unsigned char)(1 + random_below(255));
             break;
         case 2: /* NaN and infinity */
             for (int j = 0; j < CCD_MANIFOLD_CACHE_REALS; j++)
                 if (random_below(4) == 0)
-                    memory.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
+                    pair_cache.reals[j] = j % 3 ? (float)NAN : j % 2 ? (float)INFINITY : -1e30f;
             break;
         default: break; /* of another pair */
         }
         contacts_t c = contacts_at_most(&s, 8);
         check_contacts(&s, &c, "arbitrary cache");
         CHECK(c.n == (i % 3 == 0 ? 4 : i % 3 == 1 ? 8 : 2), "arbitrary cache: %d contacts", c.n);
-        good = memory;
+        good = pair_cache;
     }
 }
 
@@ -848,12 +848,12 @@ static void fewer_contacts(void)
 
 int main(int argc, char **argv)
 {
-    static ccd_manifold_cache_t memory;
+    static ccd_manifold_cache_t pair_cache;
     share = argc > 1 ? atoi(argv[1]) : share;
     for (int round = 0; round < 3; round++) {
         /* The same scenes without a cache, with that of the last pair, with the pair's own. */
         random_state = 88172645463325252u;
-        cache = round ? &memory : NULL;
+        cache = round ? &pair_cache : NULL;
         runs_twice = round == 2;
         resting_blocks();
         random_overlaps();

@@ -149,10 +149,10 @@ static void results_are_those_of_c()
 
         ccd_contact_t c_contacts[4];
         std::array<ccd::Contact, 4> contacts;
-        ccd::ManifoldCache memory{};
-        ccd_manifold_cache_t c_memory{};
-        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts, &memory);
-        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), &c_memory, c_contacts, 4) && count >= 1, "contacts");
+        ccd::ManifoldCache cache{};
+        ccd_manifold_cache_t c_cache{};
+        const int count = ccd::contacts(a, b, dir, CCD_REAL(0.01), contacts, &cache);
+        CHECK(count == ccdContacts(o1, o2, &c, &c_dir, CCD_REAL(0.01), &c_cache, c_contacts, 4) && count >= 1, "contacts");
         for (int k = 0; k < count; k++) {
             const ccd::Contact &p = contacts[static_cast<std::size_t>(k)];
             CHECK(same(p.point1, c_contacts[k].point1) && same(p.point2, c_contacts[k].point2) &&
