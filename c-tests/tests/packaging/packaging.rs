@@ -11,7 +11,7 @@ mod harness;
 
 use harness::{Executable, Precision, Program, must_succeed, output_dir, root};
 use std::collections::BTreeSet;
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -49,27 +49,21 @@ fn c_compiler() -> Command {
     harness::compile_with(&harness::compiler(false))
 }
 
-fn define(name: &str, value: impl AsRef<OsStr>) -> OsString {
-    let mut definition = OsString::from(format!("-D{name}="));
-    definition.push(value);
-    definition
+fn define(name: &str, value: impl AsRef<Path>) -> String {
+    format!("-D{name}={}", value.as_ref().display())
 }
 
-fn precision_option() -> OsString {
+fn precision_option() -> String {
     let double = ["OFF", "ON"][usize::from(Precision::CURRENT == Precision::Double)];
     define("ENABLE_DOUBLE_PRECISION", double)
 }
 
-/// Returns the options of every build of the library. All share one folder of cargo's, in which
-/// crates are compiled once for both precisions.
-fn library_options() -> [OsString; 2] {
-    [precision_option(), define("CCD_CARGO_TARGET_DIR", output_dir().join("packaging/cargo"))]
-}
-
-fn build_library(build: &Path, prefix: &Path, options: &[OsString]) {
-    let mut configure = configure(&root().join("cmake"), build);
-    configure.arg(define("CMAKE_INSTALL_PREFIX", prefix));
-    must_succeed(configure.args(library_options()).args(options), "cmake");
+/// Configures and builds `source` in the folder `build`. All builds share one folder of cargo's, in which
+/// crates are compiled once for both precisions; `options` may name another.
+fn build(source: &str, build: &Path, options: &[String]) {
+    let cargo = define("CCD_CARGO_TARGET_DIR", output_dir().join("packaging/cargo"));
+    let mut configure = configure(&root().join(source), build);
+    must_succeed(configure.args([precision_option(), cargo]).args(options), "cmake");
     cmake(&[&"--build", &build]);
 }
 
@@ -79,10 +73,10 @@ fn installed_and_moved() -> &'static Path {
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
         let dir = fresh("installed");
-        let (build, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
-        build_library(&build, &first, &[]);
-        cmake(&[&"--install", &build]);
-        fs::remove_dir_all(&build).expect("the build tree can be removed");
+        let (tree, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
+        build("cmake", &tree, &[define("CMAKE_INSTALL_PREFIX", &first)]);
+        cmake(&[&"--install", &tree]);
+        fs::remove_dir_all(&tree).expect("the build tree can be removed");
         fs::rename(&first, &prefix).expect("the prefix can be moved");
         prefix
     })
@@ -90,13 +84,11 @@ fn installed_and_moved() -> &'static Path {
 
 /// Configures and builds the consumer in the folder `name`, which it returns. `options` override the
 /// usual ones.
-fn consumer(name: &str, way: &str, options: &[OsString]) -> PathBuf {
-    let build = fresh(name);
-    let mut configure = configure(&root().join("c-tests/tests/packaging/consumer"), &build);
-    configure.args([define("WAY", way), define("REPOSITORY", root())]);
-    must_succeed(configure.args(library_options()).args(options), "cmake");
-    cmake(&[&"--build", &build]);
-    build
+fn consumer(name: &str, way: &str, options: &[String]) -> PathBuf {
+    let folder = fresh(name);
+    let usual = [define("WAY", way), define("REPOSITORY", root())];
+    build("c-tests/tests/packaging/consumer", &folder, &[&usual, options].concat());
+    folder
 }
 
 /// Checks that the program runs on this repository's library: the shared one under `shared_under`, or
@@ -141,7 +133,7 @@ fn add_subdirectory_and_fetch_content() {
     ] {
         let prefix = fresh("parent").join(name);
         let mut options = vec![define("CMAKE_INSTALL_PREFIX", &prefix)];
-        options.extend(option.map(OsString::from));
+        options.extend(option.map(String::from));
         let build = consumer(name, way, &options);
         assert_all_run_on_ours(&build.join(programs), &build, &["plain", "namespaced"]);
         let cache = fs::read_to_string(build.join("CMakeCache.txt")).expect("CMake's cache");
@@ -207,10 +199,10 @@ fn fetch_content_from_git() {
 #[test]
 fn static_library_only() {
     let dir = fresh("static-only");
-    let (build, prefix) = (dir.join("build"), dir.join("prefix"));
+    let (tree, prefix) = (dir.join("build"), dir.join("prefix"));
     let off = define("BUILD_SHARED_LIBS", "OFF");
-    build_library(&build, &prefix, std::slice::from_ref(&off));
-    cmake(&[&"--install", &build]);
+    build("cmake", &tree, &[define("CMAKE_INSTALL_PREFIX", &prefix), off.clone()]);
+    cmake(&[&"--install", &tree]);
     find(&prefix, "libccd.a");
     assert!(!prefix.join("lib/libccd.so").exists());
     for (name, way, option) in [
@@ -463,11 +455,11 @@ fn pkg_config() {
 #[test]
 fn destdir_and_multiarch() {
     let dir = fresh("destdir");
-    let (build, stage) = (dir.join("build"), dir.join("stage"));
-    build_library(&build, Path::new("/usr"), &[]);
+    let (tree, stage) = (dir.join("build"), dir.join("stage"));
+    build("cmake", &tree, &[define("CMAKE_INSTALL_PREFIX", "/usr")]);
     let mut install = Command::new("cmake");
     install.env("DESTDIR", &stage);
-    run(install, &[&"--install", &build]);
+    run(install, &[&"--install", &tree]);
     let triplet = run(c_compiler(), &[&"-print-multiarch"]);
     let libdir = Path::new("usr/lib").join(triplet.trim());
     for file in [
