@@ -30,7 +30,7 @@ int main()
         manager.registerObject(object);
     manager.setup();
 
-    ccd_fcl::PairCache cache; /* kept between frames, one for each thread */
+    ccd_fcl::PairCache cache; /* of all frames, one for each thread */
     for (int frame = 0; frame < 4; frame++) {
         move_to(box, -0.3, 0.23 - 0.011 * frame);
         move_to(ball, 0.3 - 0.02 * frame, 0.23 - 0.011 * frame);
@@ -45,8 +45,9 @@ int main()
         ccd_fcl::distance(&box, &ball, fcl::DistanceRequestd(), between, cache);
         cache.next_frame(); /* removes pairs that were not queried */
 
-        std::printf("frame %d: %zu contacts, box and ball %.3f m apart\n", frame, data.result.numContacts(), between.min_distance);
-        for (std::size_t i = 0; i < data.result.numContacts(); i++) {
+        const std::size_t count = data.result.numContacts();
+        std::printf("frame %d: %zu contacts, box and ball %.3f m apart\n", frame, count, between.min_distance);
+        for (std::size_t i = 0; i < count; i++) {
             const fcl::Contactd &c = data.result.getContact(i);
             std::printf("  at (%.3f, %.3f, %.3f), %.1f mm deep\n", c.pos[0], c.pos[1], c.pos[2], 1000 * c.penetration_depth);
         }

@@ -35,11 +35,11 @@ static slot_t *find_slot(slot_t *entry, size_t size, unsigned first, unsigned se
 /* Removes pairs without a query in this frame and the last, and resizes the table. */
 static int resize(states_t *s)
 {
-    size_t kept = 0, size = 64;
+    size_t remaining = 0, size = 64;
     slot_t *entry;
     for (size_t i = 0; i < s->size; i++)
-        kept += s->entry[i].frame && s->entry[i].frame + 1 >= s->frame;
-    while (size < 4 * (kept + 1))
+        remaining += s->entry[i].frame && s->entry[i].frame + 1 >= s->frame;
+    while (size < 4 * (remaining + 1))
         size *= 2;
     entry = calloc(size, sizeof *entry); /* zeros: empty slots, cold states */
     if (!entry)
@@ -50,7 +50,7 @@ static int resize(states_t *s)
     free(s->entry);
     s->entry = entry;
     s->size = size;
-    s->used = kept;
+    s->used = remaining;
     return 1;
 }
 
@@ -93,21 +93,20 @@ int main(void)
     ccd.support1 = ccd.support2 = support;
     ccd.center1 = ccd.center2 = center;
     for (states.frame = 1; states.frame <= FRAMES; states.frame++) {
-        unsigned long near = 0, overlap = 0, cold = 0;
+        unsigned long pairs = 0, overlap = 0, cold = 0;
         calls = 0;
         for (unsigned i = 0; i < BODIES; i++) {
             const double turn = 0.7 * i + 0.0002 * (i % 9 + 1) * states.frame, radius = 0.5 + 0.4 * (i % 7);
-            const ccd_vec3_t pos = {{(ccd_real_t)(radius * cos(turn)), (ccd_real_t)(radius * sin(turn)), CCD_REAL(0.05) * (ccd_real_t)(i % 5)}};
-            const ccd_vec3_t half = {{CCD_REAL(0.4), CCD_REAL(0.35), CCD_REAL(0.3)}};
-            body[i].pos = pos;
-            body[i].half = half;
+            const double z = 0.05 * (i % 5);
+            ccdVec3Set(&body[i].pos, (ccd_real_t)(radius * cos(turn)), (ccd_real_t)(radius * sin(turn)), (ccd_real_t)z);
+            ccdVec3Set(&body[i].half, CCD_REAL(0.4), CCD_REAL(0.35), CCD_REAL(0.3));
         }
         for (unsigned i = 0; i < BODIES; i++)
             for (unsigned j = i + 1; j < BODIES; j++) {
                 ccd_penetration_t hit;
                 if (ccdVec3Dist2(&body[i].pos, &body[j].pos) > 1) /* a broad phase */
                     continue;
-                near++;
+                pairs++;
                 overlap += ccdPenetration(&body[i], &body[j], &ccd, state_of(&states, i, j), 0, &hit) >= 0;
                 cold -= calls; /* the same without states */
                 ccdPenetration(&body[i], &body[j], &ccd, NULL, 0, &hit);
@@ -115,7 +114,7 @@ int main(void)
             }
         if (states.frame % 20 == 0)
             printf("frame %lu: %lu pairs near, %lu overlap, %.1f callbacks a pair, %.1f without states, %lu slots\n",
-                   states.frame, near, overlap, (double)(calls - cold) / (double)near, (double)cold / (double)near,
+                   states.frame, pairs, overlap, (double)(calls - cold) / (double)pairs, (double)cold / (double)pairs,
                    (unsigned long)states.size);
     }
     free(states.entry);

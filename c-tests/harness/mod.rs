@@ -37,7 +37,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, SystemTime};
 
 /// The scalar of a build of the library.
@@ -217,14 +216,6 @@ fn emulator() -> Vec<String> {
     words(&format!("CARGO_TARGET_{target}_RUNNER"))
 }
 
-/// Returns the command that runs `path` with `runner`.
-fn run_by(runner: &[String], path: &Path) -> Command {
-    let mut words = runner.iter().map(OsString::from).chain([path.into()]);
-    let mut command = Command::new(words.next().expect("a path at least"));
-    command.args(words);
-    command
-}
-
 /// Copies the archive with `rs_` before every symbol of libccd, so that one process can link this
 /// library and the system's.
 fn rename_symbols(archive: &Path, renamed: &Path) {
@@ -236,19 +227,12 @@ fn rename_symbols(archive: &Path, renamed: &Path) {
     let symbols = must_succeed(&mut nm, "nm (Debian: binutils)").stdout;
     let names = symbols.lines().filter_map(|line| line.split_whitespace().nth(2));
     let ours = names.filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"));
-    let lines: BTreeSet<String> = ours.map(|n| format!("{n} rs_{n}\n")).collect();
-    assert!(!lines.is_empty(), "{}: no symbol of libccd", archive.display());
-    let table = renamed.with_extension("syms");
-    let lines: String = lines.into_iter().collect();
-    fs::write(&table, lines).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
+    let options: BTreeSet<String> = ours.map(|name| format!("--redefine-sym={name}=rs_{name}")).collect();
+    assert!(!options.is_empty(), "{}: no symbol of libccd", archive.display());
     replace(renamed, |new| {
-        let mut objcopy = binutils("objcopy");
-        objcopy.arg(format!("--redefine-syms={}", table.display()));
-        objcopy.arg(archive).arg(new);
-        must_succeed(&mut objcopy, "objcopy (Debian: binutils)");
+        must_succeed(binutils("objcopy").args(&options).arg(archive).arg(new), "objcopy (Debian: binutils)");
         Ok(())
     });
-    fs::remove_file(&table).unwrap_or_else(|e| panic!("{}: {e}", table.display()));
 }
 
 /// Returns the modification time of a file; `None` where there is none.
@@ -272,12 +256,11 @@ fn is_up_to_date(program: &Path, command: &Command, rule: &Path) -> bool {
 /// Makes a file under a temporary name and moves it into place, so that the old file stays valid for
 /// processes that use it.
 fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let mut new = path.as_os_str().to_owned();
-    new.push(format!(".{}-{number}", std::process::id()));
-    let new = PathBuf::from(new);
-    make(&new).and_then(|()| fs::rename(&new, path)).unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
+    let made = tempfile::tempdir_in(path.parent().expect("a file in a folder")).and_then(|folder| {
+        let new = folder.path().join("new");
+        make(&new).and_then(|()| fs::rename(&new, path))
+    });
+    made.unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
 }
 
 /// Runs a tool; panics with its output unless it succeeds.
@@ -603,17 +586,26 @@ impl Executable {
 
     /// Returns the command that runs the program, without arguments.
     pub fn command(&self) -> Command {
-        let mut runner = self.runner();
-        runner.extend(self.before.iter().map(|w| w.to_string_lossy().into_owned()));
-        let mut command = run_by(&runner, &self.path);
-        set_library_path(&mut command, self.library_path.as_deref());
+        let runner = self.runner().into_iter().map(OsString::from);
+        self.command_of(runner.chain(self.before.clone()))
+    }
+
+    /// Returns the command that runs the program with the words of `runner` before it.
+    fn command_of(&self, runner: impl Iterator<Item = OsString>) -> Command {
+        let mut words = runner.chain([self.path.clone().into()]);
+        let mut command = Command::new(words.next().expect("a path at least"));
+        match &self.library_path {
+            Some(dir) => command.env("LD_LIBRARY_PATH", dir),
+            None => command.env_remove("LD_LIBRARY_PATH"),
+        };
+        // The linker resolves every symbol at the start: a missing one fails at once.
+        command.args(words).env("LD_BIND_NOW", "1");
         command
     }
 
     /// Returns the libccd.so.2 that the dynamic linker finds for this program, as ldd does.
     pub fn loaded_ccd(&self) -> Option<PathBuf> {
-        let mut command = run_by(&emulator(), &self.path);
-        set_library_path(&mut command, self.library_path.as_deref());
+        let mut command = self.command_of(emulator().into_iter().map(OsString::from));
         let written = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
         let line = written.stdout.lines().find(|line| line.contains("libccd.so"))?;
         // The path may contain blanks.
@@ -635,10 +627,7 @@ impl Executable {
         let loaded = self.loaded_ccd();
         let file = loaded.as_deref().filter(|path| !path.starts_with(output_dir()));
         let bytes = file.and_then(|path| fs::read(path).ok());
-        let bytes = bytes.unwrap_or_else(|| {
-            let name = &self.name;
-            panic!("{name} runs on {loaded:?}, not on the system's libccd")
-        });
+        let bytes = bytes.unwrap_or_else(|| panic!("{} runs on {loaded:?}, not on the system's libccd", self.name));
         // Installed in /usr/local, this library is found before libccd.
         let name = b"ccdImplementation";
         assert!(
@@ -657,15 +646,6 @@ pub fn preload(command: &mut Command, library: &Path) {
     dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
     command.env("LD_PRELOAD", library.file_name().expect("a file"));
     command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
-}
-
-fn set_library_path(command: &mut Command, dir: Option<&Path>) {
-    match dir {
-        Some(dir) => command.env("LD_LIBRARY_PATH", dir),
-        None => command.env_remove("LD_LIBRARY_PATH"),
-    };
-    // The linker resolves every symbol at the start: a missing one fails at once.
-    command.env("LD_BIND_NOW", "1");
 }
 
 /// Runs a command under `timeout`; panics where it does not end in time.
@@ -719,13 +699,8 @@ pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
         .find(|line| line.split(' ').next() == Some(first))
         .unwrap_or_else(|| panic!("no `{first}` line in {text}"));
     let words: Vec<&str> = line.split(' ').skip(1).collect();
-    words
-        .chunks(2)
-        .map(|pair| {
-            let value = pair[1].parse().unwrap_or_else(|e| panic!("{line}: {e}"));
-            (pair[0].to_owned(), value)
-        })
-        .collect()
+    let number = |word: &str| word.parse().unwrap_or_else(|e| panic!("{line}: {e}"));
+    words.chunks(2).map(|pair| (pair[0].to_owned(), number(pair[1]))).collect()
 }
 
 /// Replaces the text between the mark `<!-- NAME -->` and the next `<!-- end -->`.

@@ -450,32 +450,29 @@ static void unused_fields(const call_t *call)
 static void null_outputs(void)
 {
     for (int round = 0; round < 2 * percent; round++) {
-        static const int numbers[] = {CALL_MPR, CALL_GJK};
         const int expected = round % 2 - 1;
-        ccd_real_t depth[2];
-        ccd_vec3_t direction[2], pos[2], sep;
-        call_args_t args = {.depth = &depth[0], .dir = &direction[0], .pos = &pos[0]};
+        results_t all, part;
+        ccd_vec3_t sep;
         shape_t a, b;
         ccd_t ccd;
         random_pair(&call_table[CALL_GJK], round % 2, &a, &b, &ccd);
         ccd.center1 = ccd.center2 = shape_center;
-        for (int i = 0; i < 2; i++)
-            for (int skip = 0; skip < 8; skip++) {
-                const call_args_t part = {.depth = skip & 1 ? NULL : &depth[1], .dir = skip & 2 ? NULL : &direction[1],
-                                          .pos = skip & 4 ? NULL : &pos[1]};
-                memset(depth, 0x5a, sizeof depth);
-                memset(direction, 0x5a, sizeof direction);
-                memset(pos, 0x5a, sizeof pos);
-                CHECK(call_library(numbers[i], &a, &b, &ccd, &args) == expected, "all outputs");
-                CHECK(call_library(numbers[i], &a, &b, &ccd, &part) == expected, "NULL outputs");
-                CHECK((skip & 1) || same_bits(&depth[0], &depth[1], sizeof depth[0]), "depth");
-                CHECK((skip & 2) || same_bits(&direction[0], &direction[1], sizeof direction[0]), "dir");
-                CHECK((skip & 4) || same_bits(&pos[0], &pos[1], sizeof pos[0]), "pos");
-            }
+        for (int i = 0; i < 16; i++) {
+            const int number = i < 8 ? CALL_MPR : CALL_GJK;
+            const call_args_t args = {.depth = &all.depth, .dir = &all.dir, .pos = &all.pos};
+            const call_args_t some = {.depth = i & 1 ? &part.depth : NULL, .dir = i & 2 ? &part.dir : NULL,
+                                      .pos = i & 4 ? &part.pos : NULL};
+            memset(&all, 0x5a, sizeof all);
+            memcpy(&part, &all, sizeof all);
+            CHECK(call_library(number, &a, &b, &ccd, &args) == expected, "all outputs");
+            CHECK(call_library(number, &a, &b, &ccd, &some) == expected, "NULL outputs");
+            CHECK(!(i & 1) || same_bits(&all.depth, &part.depth, sizeof all.depth), "depth");
+            CHECK(!(i & 2) || same_bits(&all.dir, &part.dir, sizeof all.dir), "dir");
+            CHECK(!(i & 4) || same_bits(&all.pos, &part.pos, sizeof all.pos), "pos");
+        }
         CHECK(ccdGJKSeparate(&a, &b, &ccd, NULL) == expected && ccdGJKSeparate(&a, &b, &ccd, &sep) == expected, "sep");
-        for (int i = 0; i < 3 && expected == 0; i++)
-            CHECK(fabs((double)(sep.v[i] - depth[0] * direction[0].v[i])) <= 4 * (double)CCD_EPS * (double)depth[0],
-                  "sep = depth dir");
+        ccdVec3Scale(&all.dir, all.depth);
+        CHECK(expected || sqrt((double)ccdVec3Dist2(&sep, &all.dir)) <= 4 * (double)CCD_EPS * (double)all.depth, "depth * dir");
     }
 }
 

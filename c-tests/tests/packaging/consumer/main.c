@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Two unit spheres, 1.5 apart, through each half of the library. Prints which
- * library answered. */
+/* Queries two unit spheres 1.5 apart by libccd's calls and one of the extension. Prints the library's name. */
 
 #include <ccd/ccd.h>
 #include <ccd/quat.h>
