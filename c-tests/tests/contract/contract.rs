@@ -250,28 +250,20 @@ fn headers_compute_the_same_as_libccd() {
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn headers_compile_without_warnings() {
-    let compilers = [
-        (None, "c", &["c99", "c11", "gnu17"][..]),
-        (None, "c++", &["c++11", "c++14", "c++20"][..]),
-        (Some("clang"), "c", &["c99", "c11", "gnu17"][..]),
-        (Some("clang++"), "c++", &["c++11", "c++20"][..]),
-    ];
-    for (named, language, standards) in compilers {
-        let mut compiler = harness::compiler(language == "c++");
-        if let Some(name) = named {
-            if !harness::installed(name) {
-                println!("skipped: {name} is not installed");
-                continue;
-            }
-            compiler.compiler(name);
+    let path = |file: &str| harness::root().join(file);
+    for (is_cpp, clang, standards) in
+        [(false, "clang", ["c99", "c11", "gnu17"]), (true, "clang++", ["c++11", "c++14", "c++20"])]
+    {
+        let mut compilers = vec![harness::compiler(is_cpp)];
+        if harness::installed(clang) {
+            compilers.push(harness::compiler(is_cpp).compiler(clang).clone());
         }
-        for standard in standards {
+        for (compiler, standard) in compilers.iter().flat_map(|c| standards.map(|s| (c, s))) {
             for precision in ["-DCCD_DOUBLE", "-DCCD_SINGLE", "-DUNDECIDED"] {
-                let mut compile = harness::compile_with(&compiler);
-                compile.args(["-x", language, &format!("-std={standard}"), "-fsyntax-only"]);
-                compile.args(["-Wall", "-Wextra", "-pedantic", "-Wshadow", "-Werror", "-I"]);
-                compile.arg(harness::root().join("include")).arg(precision);
-                compile.arg(harness::root().join("c-tests/tests/contract/headers.c"));
+                let mut compile = harness::compile_with(compiler);
+                compile.args(["-x", if is_cpp { "c++" } else { "c" }, &format!("-std={standard}"), "-fsyntax-only"]);
+                compile.args(["-Wall", "-Wextra", "-pedantic", "-Wshadow", "-Werror", precision, "-I"]);
+                compile.arg(path("include")).arg(path("c-tests/tests/contract/headers.c"));
                 harness::must_succeed(&mut compile, "the compiler");
             }
         }

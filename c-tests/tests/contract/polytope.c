@@ -33,7 +33,8 @@ static pt_t pt;
 static pt_el_t *address[MAX_ELEMENTS]; /* the library's elements */
 static struct { int element; ccd_real_t dist; int type; } nearest; /* expected */
 
-static int number(const void *element)
+/* Returns the number of an element; NONE for NULL. */
+static int index_of(const void *element)
 {
     for (int i = 0; i < count; i++)
         if (model[i].type != 0 && element == address[i])
@@ -59,7 +60,7 @@ static void reset_nearest(void)
     nearest.type = PT_FACE;
 }
 
-/* --- the check ------------------------------------------------------------- */
+/* --- checks ---------------------------------------------------------------- */
 
 /* Checks that a list contains the elements of a type, oldest first. */
 static void check_list(const list_t *head, int type)
@@ -112,23 +113,20 @@ static void check_polytope(void)
         } else if (model[i].type == PT_EDGE) {
             const pt_edge_t *edge = (const pt_edge_t *)address[i];
             for (int k = 0; k < 2; k++) {
-                CHECK(number(edge->vertex[k]) == model[i].parts[k], "edge %d's vertices", i);
-                CHECK((edge->faces[k] == NULL ? NONE : number(edge->faces[k])) == model[i].sides[k],
-                      "edge %d's faces", i);
+                CHECK(index_of(edge->vertex[k]) == model[i].parts[k], "edge %d's vertices", i);
+                CHECK(index_of(edge->faces[k]) == model[i].sides[k], "edge %d's faces", i);
             }
         } else {
             const pt_face_t *face = (const pt_face_t *)address[i];
             for (int k = 0; k < 3; k++)
-                CHECK(number(face->edge[k]) == model[i].parts[k], "face %d's edges", i);
+                CHECK(index_of(face->edge[k]) == model[i].parts[k], "face %d's edges", i);
         }
     }
-    CHECK((pt.nearest == NULL ? NONE : number(pt.nearest)) == nearest.element,
-          "nearest is %d, expected %d", number(pt.nearest), nearest.element);
-    CHECK(pt.nearest_dist == nearest.dist && pt.nearest_type == nearest.type,
-          "nearest_dist, nearest_type");
+    CHECK(index_of(pt.nearest) == nearest.element, "nearest is %d, expected %d", index_of(pt.nearest), nearest.element);
+    CHECK(pt.nearest_dist == nearest.dist && pt.nearest_type == nearest.type, "nearest_dist, nearest_type");
 }
 
-/* --- the steps ------------------------------------------------------------- */
+/* --- steps ----------------------------------------------------------------- */
 
 static int pick(int type)
 {
@@ -312,11 +310,11 @@ static size_t read_file(const char *name, char *text, size_t size)
 static void dump(void)
 {
     static char text[1 << 17];
-    int id = 0, file;
+    int id = 0;
     char name[512];
     const char *directory = getenv("TMPDIR");
     snprintf(name, sizeof name, "%s/polytope-XXXXXX", directory ? directory : P_tmpdir);
-    file = mkstemp(name);
+    const int file = mkstemp(name);
     CHECK(file >= 0, "a temporary file");
     close(file);
     ccdPtDumpSVT(&pt, name);
@@ -333,10 +331,8 @@ static void dump(void)
     remove(name);
     ccdPtDumpSVT(&pt, "/no such directory/polytope");
     for (int i = 0; i < count; i++)
-        if (model[i].type == PT_VERTEX) {
-            CHECK(((pt_vertex_t *)address[i])->id == id, "vertex number %d", id);
-            id++;
-        }
+        if (model[i].type == PT_VERTEX)
+            CHECK(((pt_vertex_t *)address[i])->id == id++, "a vertex's id");
 }
 
 static void add_any_edge(void)

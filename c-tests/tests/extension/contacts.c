@@ -111,24 +111,23 @@ static double lateral_distance(const scene_t *s, const ccd_contact_t *p)
 static double distance_outside(const shape_t *shape, const ccd_vec3_t *p, int trials)
 {
     double best = -HUGE_VAL, best_dir[3] = {0, 0, 0}, step = 1;
-    int k;
+    rng_t random = rng(1, 0);
     for (int trial = 0; trial < trials; trial++) {
-        ccd_vec3_t m, q;
-        double v[3], l = 0, out = 0;
-        for (k = 0; k < 3; k++) {
-            v[k] = uniform(-step, step) + (4 * trial < trials ? 0 : best_dir[k]);
-            l += v[k] * v[k];
-        }
-        for (k = 0, l = sqrt(l); k < 3; k++)
-            m.v[k] = (ccd_real_t)(v[k] /= l);
-        shape_support(shape, &m, &q);
-        for (k = 0; k < 3; k++)
-            out += v[k] * ((double)p->v[k] - (double)q.v[k]);
+        const int is_global = 4 * trial < trials;
+        double v[3], out;
+        rng_unit_vector(&random, v);
+        for (int k = 0; k < 3 && !is_global; k++)
+            v[k] = best_dir[k] + step * v[k];
+        const double length = sqrt(truth_dot3(v, v));
+        for (int k = 0; k < 3; k++)
+            v[k] /= length;
+        out = dot(v, p) - support_height(shape, v, 1);
         if (out > best) {
             best = out;
             memcpy(best_dir, v, sizeof best_dir);
-        } else if (4 * trial >= trials)
+        } else if (!is_global) {
             step = step < 1e-6 ? 0.1 : 0.97 * step;
+        }
     }
     return best;
 }
@@ -157,12 +156,9 @@ static void check_contacts(scene_t *s, const contacts_t *c, const char *what)
     check_heights(s, c, what);
     for (int i = 0; i < c->n; i++) {
         const ccd_contact_t *p = &c->c[i];
-        const uint64_t random = random_state;
         double out = lateral_distance(s, p);
         CHECK(out <= noise || (c->n == 1 && out > slop / 2), "%s: points %g across", what, out);
         out = fmax(distance_outside(&s->a, &p->point1, 20), distance_outside(&s->b, &p->point2, 20));
-        if (c->n == 1)
-            random_state = random;
         CHECK(out <= room, "%s: a point %g outside, slop %g", what, out, s->slop);
     }
 }
