@@ -40,14 +40,6 @@ static fcl::CollisionRequest<S> contacts(std::size_t max)
 
 /* --- against exact truth -------------------------------------------------------- */
 
-struct context {
-    const char *a, *b;
-    long pose;
-    double depth;
-};
-#define CONTEXT(c) (c).a, (c).b, (c).pose, (c).depth
-#define AT "%s %s %ld at %g: "
-
 /* Returns whether the point is outside of the shape by more than `bound`. */
 static bool is_outside(const shape_t &shape, const vec &p, double bound, double width)
 {
@@ -57,37 +49,37 @@ static bool is_outside(const shape_t &shape, const vec &p, double bound, double 
 }
 
 /* Checks the one contact of a pair, the deepest. */
-static void check_contact(const shape_t &a, const shape_t &b, const collision &r, const known_t &known, const context &c)
+static void check_contact(const shape_t &a, const shape_t &b, const collision &r, const pose_truth_t &truth, const char *name)
 {
     const fcl::Contact<S> &contact = r.getContact(0);
     const double n[3] = {double(contact.normal[0]), double(contact.normal[1]), double(contact.normal[2])};
-    const double error = TOLERANCE + ROUNDING * known.size, depth = double(contact.penetration_depth);
-    CHECK(r.numContacts() == 1, AT "%zu contacts", CONTEXT(c), r.numContacts());
-    CHECK(std::fabs(contact.normal.norm() - 1) < (SINGLE ? 1e-5 : 1e-12), AT "normal", CONTEXT(c));
-    CHECK(depth >= known.lower - error && depth <= known.upper * 1.001 + error, AT "depth %g", CONTEXT(c), depth);
-    CHECK(truth_support_value(&a, &b, n) <= depth + error, AT "overlap after a move by %g along the normal", CONTEXT(c), depth);
+    const double error = TOLERANCE + ROUNDING * truth.size, depth = double(contact.penetration_depth);
+    CHECK(r.numContacts() == 1, "%s: %zu contacts", name, r.numContacts());
+    CHECK(std::fabs(contact.normal.norm() - 1) < (SINGLE ? 1e-5 : 1e-12), "%s: normal", name);
+    CHECK(depth >= truth.lower - error && depth <= truth.upper * 1.001 + error, "%s: depth %g", name, depth);
+    CHECK(truth_support_value(&a, &b, n) <= depth + error, "%s: overlap after a move by %g along the normal", name, depth);
     /* pos is in both shapes, within the depth. */
     for (const shape_t *shape : {&a, &b})
-        CHECK(!is_outside(*shape, contact.pos, depth + 10 * error, 0.01 * (depth + error)), AT "pos outside", CONTEXT(c));
+        CHECK(!is_outside(*shape, contact.pos, depth + 10 * error, 0.01 * (depth + error)), "%s: pos outside", name);
 }
 
-static void check_distance(const shape_t &a, const shape_t &b, const proximity &r, const known_t &known, const context &c)
+static void check_distance(const shape_t &a, const shape_t &b, const proximity &r, const pose_truth_t &truth, const char *name)
 {
-    const double error = TOLERANCE + ROUNDING * known.size, d = double(r.min_distance);
-    CHECK(d <= -known.lower + error && d >= -known.upper - error, AT "distance %g", CONTEXT(c), d);
+    const double error = TOLERANCE + ROUNDING * truth.size, d = double(r.min_distance);
+    CHECK(d <= -truth.lower + error && d >= -truth.upper - error, "%s: distance %g", name, d);
     const vec way = r.nearest_points[1] - r.nearest_points[0];
     if (d > 0)
-        CHECK(std::fabs(way.norm() - d) <= 2 * error, AT "points %g apart, distance %g", CONTEXT(c), double(way.norm()), d);
+        CHECK(std::fabs(way.norm() - d) <= 2 * error, "%s: points %g apart, distance %g", name, double(way.norm()), d);
     for (int i = 0; i < 2; i++)
-        CHECK(!is_outside(i ? b : a, r.nearest_points[i], 3 * error, error), AT "point %d outside", CONTEXT(c), i);
+        CHECK(!is_outside(i ? b : a, r.nearest_points[i], 3 * error, error), "%s: point %d outside", name, i);
 }
 
 /* Checks one pose cold, warm, and with the state of the other order, and that the results without contacts and
  * points are the same. */
-static void check_pose(const body_t &a, const body_t &b, const object &oa, const object &ob, const known_t &known,
-                     ccd_fcl::PairCache &cache, const context &c)
+static void check_pose(const body_t &a, const body_t &b, const object &oa, const object &ob, const pose_truth_t &truth,
+                       ccd_fcl::PairCache &cache, const char *name)
 {
-    const double error = TOLERANCE + ROUNDING * known.size;
+    const double error = TOLERANCE + ROUNDING * truth.size;
     const fcl::DistanceRequest<S> with_points(true, true, 0, 0, TOLERANCE), without(false, false, 0, 0, TOLERANCE);
     for (int pass = 0; pass < 3; pass++) {
         ccd_fcl::PairCache cold;
@@ -98,50 +90,53 @@ static void check_pose(const body_t &a, const body_t &b, const object &oa, const
             collision r, plain;
             proximity d, short_d;
             ccd_fcl::collide(o1, o2, contacts(1), r, pairs);
-            CHECK(r.isCollision() || known.lower <= error, AT "missed", CONTEXT(c));
-            CHECK(!r.isCollision() || known.upper >= -error, AT "spurious", CONTEXT(c));
+            CHECK(r.isCollision() || truth.lower <= error, "%s: missed", name);
+            CHECK(!r.isCollision() || truth.upper >= -error, "%s: spurious", name);
             if (r.isCollision())
-                check_contact(s1, s2, r, known, c);
+                check_contact(s1, s2, r, truth, name);
             ccd_fcl::distance(o1, o2, with_points, d, pairs);
-            check_distance(s1, s2, d, known, c);
+            check_distance(s1, s2, d, truth, name);
             ccd_fcl::distance(o1, o2, without, short_d, pairs);
-            CHECK(std::fabs(short_d.min_distance - d.min_distance) <= 2 * error, AT "distance without points", CONTEXT(c));
+            CHECK(std::fabs(short_d.min_distance - d.min_distance) <= 2 * error, "%s: distance without points", name);
             for (int run = 0; run < 2; run++) {
                 ccd_fcl::collide(o1, o2, fcl::CollisionRequest<S>(), plain, pairs);
-                CHECK(plain.numContacts() == r.numContacts() || std::fabs(known.upper) <= error, AT "plain", CONTEXT(c));
+                CHECK(plain.numContacts() == r.numContacts() || std::fabs(truth.upper) <= error, "%s: plain", name);
             }
-            CHECK(pairs.size() == 1 || pass > 0, AT "%zu states", CONTEXT(c), pairs.size());
+            CHECK(pairs.size() == 1 || pass > 0, "%s: %zu states", name, pairs.size());
         }
     }
 }
 
 static void check_certified_depths(int poses)
 {
-    static const double depths[] = {1e-1, 1e-2, 1e-4, 1e-6, 1e-14, 0, -1e-6, -1e-3, -1e-1};
+    /* the first is the depth of the drawn pose */
+    static const double depths[] = {HUGE_VAL, 1e-1, 1e-2, 1e-4, 1e-6, 1e-14, 0, -1e-6, -1e-3, -1e-1};
     ccd_fcl::PairCache cache;
     uniform_seed(7);
-    for (int i = 0; i < KINDS; i++)
-        for (int j = 0; j < KINDS; j++)
-            for (long k = 0; k < poses; k++) {
-                static body_t a, b;
-                known_t known;
-                if (i == KIND_TRIANGLE && j == KIND_TRIANGLE)
-                    continue; /* never overlap */
-                body_random(&a, i);
-                body_random(&b, j);
-                pose_overlapping(&a, &b, &known);
-                const geometry ga = fcl_geometry(a, TRIANGLE_SHAPE), gb = fcl_geometry(b, TRIANGLE_SHAPE);
-                object oa(ga, fcl_pose(a.shape)), ob(gb, fcl_pose(b.shape));
-                CHECK(ccd_fcl::is_ours(ga.get(), gb.get()), "%s %s", KIND_NAME[i], KIND_NAME[j]);
-                check_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
-                for (double depth : depths) {
-                    if (depth * known.size >= known.upper)
-                        continue;
-                    pose_at_depth(&b, &known, depth * known.size);
-                    ob.setTransform(fcl_pose(b.shape));
-                    check_pose(a, b, oa, ob, known, cache, context{KIND_NAME[i], KIND_NAME[j], k, known.upper});
-                }
+    for (int i = 0; i < KINDS * KINDS * poses; i++) {
+        const int kind1 = i / poses / KINDS, kind2 = i / poses % KINDS;
+        static body_t a, b;
+        pose_truth_t truth;
+        if (kind1 == KIND_TRIANGLE && kind2 == KIND_TRIANGLE)
+            continue; /* never overlap */
+        body_random(&a, kind1);
+        body_random(&b, kind2);
+        pose_overlapping(&a, &b, &truth);
+        const geometry ga = fcl_geometry(a, TRIANGLE_SHAPE), gb = fcl_geometry(b, TRIANGLE_SHAPE);
+        object oa(ga, fcl_pose(a.shape)), ob(gb, fcl_pose(b.shape));
+        CHECK(ccd_fcl::is_supported(ga.get(), gb.get()), "%s %s", KIND_NAME[kind1], KIND_NAME[kind2]);
+        for (double depth : depths) {
+            char name[80];
+            if (depth < HUGE_VAL) {
+                if (depth * truth.size >= truth.upper)
+                    continue;
+                pose_at_depth(&b, &truth, depth * truth.size);
+                ob.setTransform(fcl_pose(b.shape));
             }
+            std::snprintf(name, sizeof name, "%s %s %d at %g", KIND_NAME[kind1], KIND_NAME[kind2], i % poses, truth.upper);
+            check_pose(a, b, oa, ob, truth, cache, name);
+        }
+    }
 }
 
 /* --- several contacts ----------------------------------------------------------- */
@@ -324,7 +319,7 @@ static void check_pairs_of_fcl(void)
         const object other = placed(kind, vec(0, 0, S(0.05)));
         ccd_fcl::PairCache cache;
         collision r, theirs;
-        CHECK(!ccd_fcl::is_ours(ball.collisionGeometry().get(), kind.get()), "not for this library");
+        CHECK(!ccd_fcl::is_supported(ball.collisionGeometry().get(), kind.get()), "supported");
         if (SINGLE && kind == mesh)
             continue;
         ccd_fcl::collide(&ball, &other, contacts(10), r, cache);
