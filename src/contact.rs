@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Settings and results of the solvers, and the contact position.
+//!
+//! All guarantees assume convex objects and support functions that return a farthest point. A contradiction that a
+//! query notices ([`Status::InconsistentSupport`]) sets [`Penetration::limit`]: `depth_lower` is then 0, and `depth`
+//! is the least support value of the points that the support functions returned when each direction was evaluated
+//! twice. Moving obj2 by it need not separate the objects.
 
 pub mod center_of_pressure;
 pub mod face;
@@ -17,14 +22,19 @@ use crate::math::Vec3;
 /// The tolerance and the limits of a query.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Largest error of the depth, metres; not negative and not NaN, but possibly infinite. Solvers
-    /// floor it at a few ulps of the size of the objects.
+    /// Largest error of the depth, metres; not negative and not NaN, but possibly infinite. Solvers clamp it
+    /// ([`Scale::tolerance`](crate::minkowski::tolerance::Scale::tolerance)).
     pub tolerance: f64,
-    /// Limit on the iterations of any loop; at most `ITERATION_CAP`.
+    /// Limit on the iterations of a query, all stages together; at most [`ITERATION_CAP`](crate::math::ITERATION_CAP).
+    /// An iteration is a support point after the first tetrahedron or portal: one that expands a polytope, or that
+    /// refines or confirms a face in the local search. In `along`, `planar` and `incremental` it is a step of portal
+    /// discovery or refinement, or a change of the ray; in a distance any support point, and the depth of objects
+    /// that overlap is counted anew. Support points that decide whether the objects overlap are not limited, except
+    /// in a distance.
     pub max_iterations: u64,
 }
 
-/// Cause of a solver's end. The depth is sound with all but the last.
+/// Cause of a solver's end. The depth is sound for all causes except [`Status::InconsistentSupport`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Status {
     /// The gap between the bounds is within the tolerance.
@@ -32,11 +42,12 @@ pub enum Status {
     Converged,
     /// `max_iterations` was reached.
     IterationLimit,
-    /// The library's limit of support points was reached.
+    /// The library's own limit of support points was reached.
     SupportLimit,
     /// Rounding ended the search.
     Rounding,
-    /// A support function contradicts itself; nothing is proven.
+    /// A support function contradicts itself, or (local search only) a center is outside its object. Nothing is
+    /// proven.
     InconsistentSupport,
 }
 
@@ -45,33 +56,33 @@ pub enum Status {
 pub struct Penetration {
     /// Metres, >= 0. Moving obj2 by `depth * dir` separates the objects.
     pub depth: f64,
-    /// Proven lower bound of the globally least depth, metres; 0 where none is proven.
+    /// Proven lower bound of the globally least depth, metres; 0 if none is proven.
     pub depth_lower: f64,
     /// Penetration direction, unit: obj2 moves along it.
     pub dir: Vec3,
     /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in a query along
     /// a given direction.
     pub normal: Vec3,
-    /// Contact position; zero where it was not requested.
+    /// Contact position; zero if it was not requested.
     pub pos: Vec3,
     /// Witness point on obj1.
     pub point1: Vec3,
     /// Witness point on obj2.
     pub point2: Vec3,
-    /// Number of iterations of the solver.
+    /// Number of iterations of the solver, as [`Settings::max_iterations`] counts them.
     pub iterations: u64,
-    /// A limit or rounding ended the search before the tolerance was met.
+    /// True if a limit, rounding or an inconsistent support function ended the search before the tolerance was met.
     pub limit: bool,
 }
 
 impl Penetration {
-    /// Returns whether the witness points are `depth` apart along the normal within the tolerance, and
-    /// perpendicular to it no more than sqrt(2 · depth · tolerance).
+    /// Returns whether the distance of the witness points is `depth` along the normal, within the tolerance, and
+    /// at most sqrt(2 · depth · tolerance) perpendicular to it.
     pub fn has_sound_witnesses(&self, tolerance: f64) -> bool {
         let difference = self.point1 - self.point2;
         let along = difference.dot(&self.normal);
-        let across2 = (difference - self.normal * along).norm_squared();
-        (along - self.depth).abs() <= tolerance && across2 <= 2.0 * self.depth * tolerance
+        let perpendicular2 = (difference - self.normal * along).norm_squared();
+        (along - self.depth).abs() <= tolerance && perpendicular2 <= 2.0 * self.depth * tolerance
     }
 
     /// Returns the middle of the witness points.

@@ -46,28 +46,28 @@ pub fn lower_to_real(x: f64) -> Real {
     }
 }
 
-/// Returns `v / |v|`, or `None` when `v` is zero or not finite.
+/// Returns `v / |v|` for vectors of any length; `None` if `v` is zero or not finite.
 #[inline]
 pub fn unit(v: &Vec3) -> Option<Vec3> {
     // Squares of tiny and huge vectors under- or overflow; 0/0 and ∞/∞ are NaN.
     normalise_unscaled(v).or_else(|| normalise_unscaled(&(v / max_abs(v))))
 }
 
-/// Returns `v / |v|`, or `None` when |v|² under- or overflows.
+/// Returns `v / |v|`; `None` if |v|² under- or overflows. Faster than [`unit`], which scales such vectors.
 #[inline(always)]
 pub fn normalise_unscaled(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();
     (n2 > f64::MIN_POSITIVE && n2 < f64::INFINITY).then(|| v * (1.0 / n2.sqrt()))
 }
 
-/// Returns the larger of two numbers, the second where one is NaN. Compiles to one instruction;
+/// Returns the larger of two numbers, the second if one is NaN. Compiles to one instruction;
 /// `max` takes several, because it skips a NaN on either side.
 #[inline(always)]
 pub fn larger<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
-/// Returns the smaller of two numbers, the second where one is NaN, like [`larger`].
+/// Returns the smaller of two numbers, the second if one is NaN, like [`larger`].
 #[inline(always)]
 pub fn lesser<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
@@ -79,8 +79,8 @@ pub fn max_abs(v: &Vec3) -> f64 {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
-/// Returns the normal of the triangle abc, twice its area long. Of a sliver the cross product of
-/// the two long, almost parallel edges is mostly rounding error: there one factor is the short edge.
+/// Returns the normal of the triangle abc; its length is twice the area. For slivers one factor is the
+/// shortest edge: the cross product of two long, almost parallel edges is mostly rounding error.
 #[inline]
 pub fn normal<T: RealField + Copy>(a: &Vector3<T>, b: &Vector3<T>, c: &Vector3<T>) -> Vector3<T> {
     let [ab, ac, bc] = [b - a, c - a, c - b];
@@ -109,10 +109,13 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
     p / p.norm()
 }
 
-/// The unit vector from which contact frames are rotated; rarely antiparallel to a normal.
+/// The reference direction of contact frames, unit. Parallel to no axis, face diagonal or space diagonal of a
+/// box that is aligned with the world's axes.
 pub const POLE: Vec3 = Vec3::new(0.36, 0.48, 0.8);
 
-/// The library's limit on the iterations of a query, an upper limit of the caller's. With the
-/// support points before and after the iterations, no query takes more than 400. Measured
-/// (`campaigns -- wide`): most minima that 360 support points do not prove, 1,400 do not prove.
+/// The library's upper limit of [`Settings::max_iterations`](crate::contact::Settings). It acts in queries that
+/// have no smaller limit of their own: distance, planar and incremental penetration. The other limits, and the sum of
+/// support points that a query may take, are at [`MAX_PROVEN_POINTS`](crate::epa::penetration::MAX_PROVEN_POINTS).
+/// Measured (`cargo run --release --example campaigns --
+/// wide`): most minima that are not proven after 360 support points are not proven after 1,400 either.
 pub const ITERATION_CAP: u64 = 380;

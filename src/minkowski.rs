@@ -3,12 +3,12 @@
 
 //! The Minkowski difference D = obj1 − obj2 of a pair, and its known vertices.
 //!
-//! Every support call returns one vertex of each object. A [`VertexSet`](vertex_set::VertexSet) keeps
-//! them: a_1 … a_k of obj1, b_1 … b_k of obj2. D contains all k² differences a_i − b_j, so
-//! conv{a_i} − conv{b_j} is an inner model of D whose support function costs dot products and no
-//! callback. MPR, EPA and GJK need *a* vertex beyond their current plane, not *the* support vertex:
-//! they take a known difference where one is far enough beyond, and query the callbacks
-//! ([`SupportQuery`](query::SupportQuery)) where none is.
+//! Every support call returns one point of each object, its *vertex*. A [`VertexSet`](vertex_set::VertexSet)
+//! keeps them, the *known vertices*: a_1 … a_k of obj1, b_1 … b_k of obj2. The *known differences* are all
+//! k² differences a_i − b_j. They are points of D, so conv{a_i} − conv{b_j} is an *inner model* of D, whose
+//! support function costs dot products and no callback. MPR, EPA and GJK need *a* point of D beyond their
+//! current plane, not the farthest one: they take a known difference if one is far enough beyond the plane,
+//! and otherwise evaluate the callbacks ([`SupportQuery`](query::SupportQuery)).
 //!
 //! | file | contents |
 //! |---|---|
@@ -16,7 +16,7 @@
 //! | [`vertex_set`] | the known vertices and the support function of their differences |
 //! | [`query`] | evaluation, upper bound, separating-axis test, inconsistent support functions |
 //! | [`tolerance`] | tolerance in force, contact epsilon, rounding |
-//! | [`round_fit`] | sphere fits, which choose the queried directions |
+//! | [`round_fit`] | sphere fits, which choose the directions to evaluate |
 //! | [`validate`] | tests of a support function and a center |
 
 pub mod query;

@@ -49,11 +49,12 @@ pub struct EpaLimits {
 }
 
 impl EpaLimits {
-    /// Returns the limits of a query that may be off by the tolerance, or by this share of the depth.
-    pub fn new(settings: &Settings, share: f64, max_points: u64) -> Self {
+    /// Returns the limits of a query whose depth may be off by the larger of the tolerance and `rel_tol` times the
+    /// depth.
+    pub fn new(settings: &Settings, rel_tol: f64, max_points: u64) -> Self {
         let tolerance = settings.tolerance;
         Self {
-            gap: GapLimit { tolerance, share },
+            gap: GapLimit { tolerance, rel_tol },
             max_points,
             max_iterations: settings.max_iterations,
         }

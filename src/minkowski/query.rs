@@ -1,43 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Evaluates the support function of D: counts, checks, keeps sizes and the least support value.
+//! Evaluates the support function of D: counts and checks the calls, and keeps the sizes and the upper bound.
 //!
 //! h(n), the support value of a unit direction n, is a sound depth: moving obj2 by h(n) n separates
-//! the objects. The least one met is the upper bound of the penetration depth. A support value that is
-//! no greater than the contact epsilon proves that the objects are apart, and ends a query of overlaps
+//! the objects. The least support value evaluated is the *upper bound* of the penetration depth. A support value of
+//! at most the contact epsilon proves that the objects are separated, and ends a query for overlaps
 //! ([`Stop::Separated`]).
 //!
 //! # Inconsistent support functions
 //!
-//! A callback that is no support function can contradict itself: its answer along n is less far along n
-//! than a vertex that it returned before (cylinders that divide by the sine near their axis, hill
-//! climbing that stops early). One wrong vertex taints the k differences that it is part of. There is
-//! one policy. A contradiction is noticed where a plane separates, and of the final plane of a query: a
-//! known difference is beyond it. From then on every direction is evaluated twice, along n and beside
-//! n ([`SupportQuery::evaluate_twice`]), and the query starts again without known vertices.
+//! A faulty callback can contradict itself: the point that it returns for n is less far along n than a vertex
+//! that it returned before (cylinders that divide by the sine near their axis, hill climbing that stops early).
+//! One wrong vertex makes the k known differences that it is part of wrong. A contradiction is detected in two
+//! places, when a plane separates and at the end of a query: a known difference lies beyond an evaluated support
+//! plane. From then on every direction n is evaluated twice, along n and along a perturbed direction
+//! ([`SupportQuery::evaluate_twice`]), and the query starts again without known vertices.
 //!
 //! # Interior point
 //!
-//! The callers' centers are trusted to lie in their objects. A plane that the interior point lies
-//! beyond shows that it does not: [`SupportQuery::interior`] is then `None`, and what was derived
-//! from it is void. Only what is queried can show it.
+//! The callers' centers are trusted to lie in their objects. If their difference, the interior point, lies beyond
+//! an evaluated support plane, a center is outside its object: [`SupportQuery::interior`] becomes `None`, and
+//! results that are based on it are discarded. Only evaluated directions can detect this.
 
 use crate::math::{Vec3, from_real, larger, perpendicular, to_real};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// The angle beside a direction at which it is evaluated a second time, radians. Measured on ODE's
-/// cylinder, whose vertices are wrong within 1e-3 of its axis.
+/// The angle between a direction and the perturbed one of its second evaluation, radians. Measured on ODE's
+/// cylinder, whose points are wrong for directions within 1e-3 of its axis.
 const REQUERY_ANGLE_RAD: f64 = 0.002;
 
-/// Why a query ends where it evaluates the support function.
+/// Reason why an evaluation of the support function ends the query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// The objects are apart, or touch within rounding: the unit vector is a separating axis.
+    /// The objects are separated, or in contact within rounding: the unit vector is a separating axis.
     Separated(Vec3),
-    /// A callback returned a point that no query can work with, or there is no memory.
+    /// A callback returned an unusable point, or an allocation failed.
     Fault(Fault),
 }
 
@@ -47,7 +47,7 @@ impl From<Fault> for Stop {
     }
 }
 
-/// Returns what a query found, `None` for objects that are apart.
+/// Returns the result of a query; `None` if the objects are separated.
 #[inline(always)]
 pub fn if_overlapping<T>(found: Result<T, Stop>) -> Result<Option<T>, Fault> {
     match found {
@@ -79,7 +79,7 @@ impl SupportSample {
     }
 }
 
-/// The least support value met.
+/// The least support value evaluated so far.
 #[derive(Clone, Copy, Debug)]
 pub struct UpperBound {
     /// The support value, metres: a sound depth.
@@ -90,22 +90,22 @@ pub struct UpperBound {
     pub index: usize,
 }
 
-/// The evaluation of one pair's support function.
+/// The state of a query: the support function of one pair and the results of its evaluations.
 pub struct SupportQuery<'q, A, B> {
     /// The Minkowski difference.
     pub md: &'q MinkowskiDifference<A, B>,
-    /// The sizes seen.
+    /// The sizes of the points evaluated so far.
     pub scale: Scale,
-    /// The least support value met; infinite before the first.
+    /// The upper bound; its depth is infinite before the first evaluation.
     pub upper: UpperBound,
-    /// The difference of the callers' centers, while no plane contradicts it.
+    /// The difference of the callers' centers, as long as no support plane excludes it from D.
     pub interior: Option<Vec3>,
-    /// A callback contradicted itself, so directions are evaluated twice.
+    /// True if a callback has contradicted itself; directions are then evaluated twice.
     pub is_inconsistent: bool,
 }
 
 impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
-    /// Begins a query that has evaluated nothing. `interior`: the difference of trusted centers.
+    /// Makes a query without evaluations. `interior`: the difference of trusted centers.
     #[inline(always)]
     pub fn new(md: &'q MinkowskiDifference<A, B>, interior: Option<&SupportPoint>) -> Self {
         let mut scale = Scale::default();
@@ -125,14 +125,14 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Returns the number of support calls so far.
+    /// Returns the number of support points evaluated so far.
     #[inline(always)]
     pub fn support_points(&self) -> u64 {
         self.md.supports()
     }
 
-    /// Evaluates the support point along unit `dir`, notes its sizes, and does nothing else: for queries
-    /// that go on beyond a separating axis or keep points themselves.
+    /// Evaluates the support point along unit `dir` and records its sizes, nothing else: for queries that
+    /// continue after a separating axis or store points themselves.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -143,8 +143,8 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(point)
     }
 
-    /// Evaluates the first direction, before there is a vertex set. Most misses end here. The caller adds
-    /// the point to the set as entry 0.
+    /// Evaluates the first direction, before there is a vertex set. Most queries of separated objects end here.
+    /// The caller adds the point to the set as entry 0.
     ///
     /// # Errors
     /// [`Stop::Separated`], [`Fault::NonFinite`].
@@ -186,8 +186,8 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(self.store_sample(set, &dir, &point, h))
     }
 
-    /// As [`SupportQuery::evaluate`], for a query that goes on beyond a separating axis: the upper bound then
-    /// is below 0.
+    /// Evaluates like [`SupportQuery::evaluate`], for a query that continues after a separating axis: the upper
+    /// bound is then negative.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -203,7 +203,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(self.store_sample(set, &dir, &point, h))
     }
 
-    /// Adds a sample to the set, and keeps its support value if it is the least.
+    /// Adds a sample to the set, and stores its support value if it is the least.
     #[inline(always)]
     fn store_sample<const N: usize>(
         &mut self,
@@ -221,7 +221,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Keeps a support value if it is the least, and tests the interior point against its plane.
+    /// Stores a support value if it is the least, and tests the interior point against its support plane.
     #[inline(always)]
     fn store_upper(&mut self, dir: &Vec3, h: f64, index: usize) {
         if h < self.upper.depth {
@@ -231,14 +231,14 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
                 index,
             };
         }
-        if let Some(c) = self.interior {
-            if dir.dot(&c) > h {
-                self.test_interior(dir.dot(&c) - h);
+        if let Some(interior) = self.interior {
+            if dir.dot(&interior) > h {
+                self.test_interior(dir.dot(&interior) - h);
             }
         }
     }
 
-    /// Gives the interior point up if it is beyond a plane by more than rounding.
+    /// Drops the interior point if it is beyond a support plane by more than rounding, `height` in metres.
     #[cold]
     #[inline(never)]
     fn test_interior(&mut self, height: f64) {
@@ -247,7 +247,8 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Evaluates again where `answer` separates but known vertices lie beyond it: one of them is wrong.
+    /// Evaluates `dir` again if its point, `answer`, separates although known vertices lie beyond its support plane:
+    /// the point or one of the vertices is wrong.
     ///
     /// # Errors
     /// [`Stop::Separated`]: the axis separates. [`Fault::NonFinite`].
@@ -261,7 +262,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     ) -> Result<SupportPoint, Stop> {
         let h = dir.dot(&answer.v);
         let least = larger(h + self.scale.support_eps(), self.scale.contact_eps());
-        // Of each object the answer, or a known vertex that is farther.
+        // For each object the farther one of the answer and the known vertices.
         let VertexPair { a, b } = set.farthest(dir);
         let known = larger(dir.dot(&set.vertex1(a.into())), dir.dot(&answer.v1))
             + larger(-dir.dot(&set.vertex2(b.into())), -dir.dot(&answer.v2));
@@ -277,8 +278,9 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Evaluates beside `dir`. Returns, of each object, the vertex of `answer`, the support point along
-    /// `dir`; or the one found beside, where that is farther along `dir` or has the other beyond its plane.
+    /// Evaluates a perturbed direction too. Returns, for each object, the vertex found along it if that contradicts the
+    /// vertex of `answer`, the support point along `dir`: if it is farther along `dir`, or if the vertex of `answer`
+    /// is beyond its support plane. Otherwise returns the vertex of `answer`.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -286,38 +288,39 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     #[inline(never)]
     fn evaluate_twice(&mut self, dir: &Vec3, answer: &SupportPoint) -> Result<SupportPoint, Fault> {
         let perturbed_dir = perturbed(dir);
-        let near = self.evaluate_point(&perturbed_dir)?;
+        let other = self.evaluate_point(&perturbed_dir)?;
         let eps = self.scale.support_eps();
+        // n and p: `dir` and its vertex; m and q: the perturbed direction and its vertex.
         let choose = |n: &Vec3, m: &Vec3, p: &Vec3, q: &Vec3| {
             let is_wrong = n.dot(q) > n.dot(p) + eps || m.dot(p) > m.dot(q) + eps;
             if is_wrong { *q } else { *p }
         };
-        let v1 = choose(dir, &perturbed_dir, &answer.v1, &near.v1);
-        let v2 = choose(&-dir, &-perturbed_dir, &answer.v2, &near.v2);
+        let v1 = choose(dir, &perturbed_dir, &answer.v1, &other.v1);
+        let v2 = choose(&-dir, &-perturbed_dir, &answer.v2, &other.v2);
         Ok(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
-    /// Returns whether a known difference is beyond a queried plane.
+    /// Returns whether a known difference is beyond the support plane of an entry by more than rounding.
     #[inline(always)]
     pub fn has_contradiction<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let tie = self.scale.tie_eps();
         (0..set.len()).any(|i| set.excess(i) > tie)
     }
 
-    /// Starts again with every direction evaluated twice: forgets the upper bound.
+    /// Resets the upper bound, and from now on evaluates every direction twice.
     pub fn restart_inconsistent(&mut self) {
         self.is_inconsistent = true;
         self.upper.depth = f64::INFINITY;
     }
 }
 
-/// Returns the unit vector [`REQUERY_ANGLE_RAD`] beside unit `n`.
+/// Returns unit `n` tilted by [`REQUERY_ANGLE_RAD`], unit.
 fn perturbed(n: &Vec3) -> Vec3 {
     let tilted = n + perpendicular(n) * REQUERY_ANGLE_RAD;
     tilted / tilted.norm()
 }
 
-/// Returns the direction as the callback sees it, rounded to the callers' scalar.
+/// Returns the direction rounded to the callers' scalar, as the callback receives it.
 #[inline(always)]
 fn representable(dir: &Vec3) -> Vec3 {
     from_real(to_real(dir))
@@ -345,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_and_a_touch_are_apart() {
+    fn a_gap_and_a_contact_are_separated() {
         for gap in [1.0, 0.0] {
             let other = ball(Vec3::x() * (2.0 + gap), 1.0);
             let md = difference(ball(Vec3::zeros(), 1.0), other);
@@ -358,9 +361,9 @@ mod tests {
         }
     }
 
-    /// A callback that returns its vertex everywhere but along x.
+    /// A callback that returns a wrong vertex only along x.
     #[test]
-    fn a_vertex_found_beside_contradicts_a_separating_axis() {
+    fn a_vertex_of_the_perturbed_direction_contradicts_a_separating_axis() {
         let short = |n: &Vec3| Vec3::x() * if *n == Vec3::x() { -1.0 } else { 1.0 };
         let md = difference(short, |_: &Vec3| Vec3::zeros());
         let mut query = SupportQuery::new(&md, None);
@@ -373,7 +376,7 @@ mod tests {
 
     /// A callback that returned a wrong vertex once.
     #[test]
-    fn a_wrong_vertex_contradicts_no_axis_that_separates_twice() {
+    fn an_axis_that_separates_twice_overrules_a_wrong_vertex() {
         let calls = Cell::new(0);
         let wrong = |_: &Vec3| {
             calls.set(calls.get() + 1);
@@ -387,10 +390,10 @@ mod tests {
         assert_eq!(stop, Stop::Separated(Vec3::x()));
     }
 
-    /// A disc whose vertices are 5 cm too high within 1e-3 of its axis: a second evaluation takes the
-    /// vertex found beside.
+    /// A disc whose vertices are 5 cm too high within 1e-3 of its axis: the second evaluation replaces them by the
+    /// vertex of the perturbed direction.
     #[test]
-    fn a_vertex_beyond_the_plane_beside_is_replaced() {
+    fn a_vertex_beyond_the_perturbed_plane_is_replaced() {
         let disc = |n: &Vec3| {
             let r = n.x.hypot(n.y);
             let height = if r < 1e-3 { 0.05 } else { 0.0 };
@@ -405,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interior_point_beyond_a_plane_is_given_up() {
+    fn an_interior_point_beyond_a_plane_is_dropped() {
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 1.0));
         for (x, is_inside) in [(1.9, true), (2.0, true), (2.0 + 1e3 * EPSILON, false)] {
             let v1 = Vec3::x() * x;

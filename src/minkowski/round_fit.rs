@@ -1,18 +1,25 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Sphere fits of the two objects, which choose where to query. They prove nothing.
+//! Sphere fits of the two objects, which choose the directions to evaluate. They prove nothing.
 //!
-//! 1. *Fit.* Two samples (n, p) and (n′, p′) of a sphere of radius ρ lie beyond each other's planes by
-//!    half of ρ |n′ − n|²: with e = n′·(p′ − p) and f = n·(p − p′), e = f and ρ = (e + f) / |n′ − n|². Each
-//!    new entry of the vertex set is compared with the entry of the least support value.
-//! 2. *Prediction.* With the spheres taken off, the corners of a face are corners of the core of D. The
-//!    foot w of the origin on their triangle predicts the least support value ρ − |w| along −w / |w|, or
-//!    ρ + |w| along w where the origin is on the inner side.
-//! 3. *Confirmation.* A prediction that comes true confirms the fit; one that misses resets the radii, and
-//!    after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
-//! 4. *Beside.* Where the fit is confirmed, the least direction tilted towards a face finds a corner as far
-//!    from it as a face may lie within the gap.
+//! No reference is known to us. Terms: the *core point* of a vertex that was found along n is the vertex less
+//! radius × n; the *core* of D is D without the spheres, and ρ is the sum of the two radii. The *foot* is the point
+//! of a triangle of core points that is closest to the origin. The *gap* is the allowed difference of the bounds.
+//!
+//! 1. *Fit.* Two samples (n, p) and (n′, p′) of a sphere of radius ρ lie below each other's support planes by
+//!    ρ |n′ − n|² / 2: with e = n′·(p′ − p) and f = n·(p − p′), e = f and ρ = (e + f) / |n′ − n|². Each new entry
+//!    of the vertex set is compared with the entry of the upper bound.
+//! 2. *Prediction.* The core points of a face's corners are a triangle of the core of D. If the origin is on its
+//!    outer side, the foot w predicts the least support value ρ − |w|, along −w / |w|; otherwise ρ + |w|, along
+//!    w / |w|.
+//! 3. *Confirmation.* A prediction that agrees with the evaluated support value confirms the fit; one that does
+//!    not resets the radii, and after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
+//! 4. *Tilted direction.* With a confirmed fit, the direction of the upper bound is tilted towards a face by the
+//!    angle at which the chord between the corners is as far from the origin as the gap allows.
+//!
+//! Outputs. [`SphereFit::radius`]: a guess. A direction of [`SphereFit::predict`] or
+//! [`SphereFit::tilted_from_lowest`] must be evaluated; the support value decides.
 
 use crate::gjk::barycentric;
 use crate::math::{Vec3, lesser, normalise_unscaled};
@@ -22,18 +29,18 @@ use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The differences allowed between two samples of one sphere.
 struct FitTolerance {
-    /// Of e and f, relative.
+    /// The largest relative difference of e and f.
     relative: f64,
-    /// The least square of the cosine between the moves of direction and vertex.
+    /// The least squared cosine between the change of direction and the change of vertex.
     cos2: f64,
 }
 
-/// Insensitive: 0.02 to 0.1.
+/// The tolerance of fits that only choose directions. Insensitive: a relative difference of 0.02 to 0.1.
 const LOOSE: FitTolerance = FitTolerance {
     relative: 0.03,
     cos2: 0.999,
 };
-/// Far above the rounding of the callbacks.
+/// The tolerance of fits whose prediction may be a result: far above the rounding error of the callbacks.
 const EXACT: FitTolerance = if cfg!(feature = "single") {
     FitTolerance {
         relative: 3e-4,
@@ -45,28 +52,32 @@ const EXACT: FitTolerance = if cfg!(feature = "single") {
         cos2: 1.0 - 1e-9,
     }
 };
-/// The share of the radius by which centers of exact fits may differ.
+/// The largest distance of two estimates of a center in an exact fit, in radii.
 const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
-/// The least square of the angle between two samples that tell a radius or a curvature.
+/// The least squared angle, radians, between two samples from which a radius or a curvature is computed.
 pub const MIN_ANGLE2: f64 = 1e-10;
-/// The share of the radius below which a distance of the core from the origin is rounding.
+/// The distance of the core from the origin up to which it counts as rounding, in radii.
 pub const MIN_CORE_DISTANCE_REL: f64 = 1e-9;
-/// The number of support calls before fits are made. Measured: without it 3 % more instructions for recorded hits,
-/// and no support point less.
+/// The number of support points before fits are made. Measured: without it 3 % more instructions for recorded hits,
+/// and as many support points.
 const MIN_SAMPLES: usize = 4;
-/// The share of the gap that a prediction must gain to be queried. Insensitive: 0.2 to 0.5; 0 takes 7 % more
-/// support points of proofs.
+/// The least predicted decrease of the upper bound for which a prediction is evaluated, in gaps. Insensitive: 0.2 to
+/// 0.5; 0 takes 7 % more support points in proofs.
 pub const MIN_GAIN: f64 = 0.3;
-/// The share of a prediction's gain that may be missed. Insensitive: 0.2 to 0.5.
+/// The part of the predicted decrease by which the evaluated support value may miss the prediction. Insensitive: 0.2
+/// to 0.5.
 pub const PREDICTION_REL_TOL: f64 = 0.2;
-/// The predictions of a model that miss before it is not used any more. Without a limit some walks take 60 support
-/// points more, and a proof of `campaign` ("centre offset along a shared axis") ends at the support limit.
+/// The number of failed predictions of a model after which it is not used any more. Without a limit some local
+/// searches take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends
+/// at the support limit.
 pub const MAX_FAILED_PREDICTIONS: u32 = 5;
-/// The k below which a second ring is no wider than EPA's own; without it proofs of the same category end at the
-/// support limit. Insensitive: 0.33 to 0.6.
+/// The least k of [`SphereFit::tilted_from_lowest`] for which a second ring of directions is evaluated around the
+/// best one. Below it the second ring is at most three times as wide as the first, and the face normals of EPA give
+/// a ring of that width. Without the limit proofs of category AXIS end at the support limit. Insensitive: 0.33 to
+/// 0.6.
 const MIN_RING_K: f64 = 0.5;
-/// The largest ratio of two rings around the least direction. Measured: without it 11 % more support points of
-/// proofs to 1e-10 m of shallow round pairs.
+/// The largest ratio of the widths of two rings. Measured: without it 11 % more support points in proofs to 1e-10 m
+/// of shallow round pairs.
 const MAX_RING_RATIO: f64 = 100.0;
 
 /// The source of a direction.
@@ -76,7 +87,7 @@ pub enum DirectionSource {
     Normal,
     /// The prediction of the sphere fit.
     Prediction,
-    /// The least direction, tilted towards the face.
+    /// The direction of the upper bound, tilted towards the face.
     Tilted,
 }
 
@@ -85,8 +96,8 @@ pub enum DirectionSource {
 struct QueryDirection {
     /// Unit.
     dir: Vec3,
-    choice: DirectionSource,
-    /// The support value that a prediction tells, metres.
+    source: DirectionSource,
+    /// The predicted support value, metres; the upper bound without a prediction.
     value: f64,
 }
 
@@ -95,13 +106,14 @@ struct QueryDirection {
 pub struct SphereFit {
     /// The radii of obj1 and obj2, metres; 0 without a fit.
     pub radius: [f64; 2],
-    /// The last prediction was confirmed.
+    /// True if the last prediction was confirmed.
     pub is_confirmed: bool,
-    /// Two samples must fit one sphere but for rounding; a prediction may then be an answer.
+    /// True if two samples must lie on one sphere within rounding; a prediction may then be a result.
     is_exact: bool,
     /// The number of entries that were compared.
     compared: usize,
-    misses: u32,
+    /// The number of failed predictions.
+    failures: u32,
 }
 
 impl SphereFit {
@@ -111,8 +123,8 @@ impl SphereFit {
         self.radius[0] + self.radius[1]
     }
 
-    /// Compares the new entries of the set with entry `lowest`, those of an exact fit with the one before too: of
-    /// several spheres of an object it is the one at the least support value.
+    /// Compares the new entries of the set with entry `lowest`, that of the upper bound. An exact fit compares each
+    /// with the previous entry too. If an object has several spheres, the one at entry `lowest` is taken.
     pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, lowest: usize) {
         let tolerance = if self.is_exact { &EXACT } else { &LOOSE };
         while self.compared < set.len() {
@@ -130,9 +142,9 @@ impl SphereFit {
         }
     }
 
-    /// Compares with all entries anew: their indices have changed.
+    /// Makes [`SphereFit::update`] compare all entries again, because their indices have changed.
     pub fn restart(&mut self) {
-        (self.compared, self.misses) = (0, 0);
+        (self.compared, self.failures) = (0, 0);
     }
 
     /// Returns a fit that has compared nothing yet, with radii of an earlier one, metres.
@@ -151,7 +163,7 @@ impl SphereFit {
         }
     }
 
-    /// Returns a fit of samples that must fit one sphere but for rounding.
+    /// Returns a fit whose samples must lie on one sphere within rounding.
     pub fn exact() -> Self {
         Self {
             is_exact: true,
@@ -168,15 +180,15 @@ impl SphereFit {
         }
     }
 
-    /// Returns the corners with the spheres taken off.
+    /// Returns the core points of the corners.
     #[inline(always)]
     pub fn core<const N: usize>(&self, set: &VertexSet<N>, corners: &[Vertex; 3]) -> [Vec3; 3] {
         let [r1, r2] = self.radius;
         corners.map(|v| v.w - set.dir(v.pair.a.into()) * r1 - set.dir(v.pair.b.into()) * r2)
     }
 
-    /// Returns the direction, unit, and the support value that the fit predicts to be the least near a
-    /// face, of outward normal `normal`; `None` without a prediction.
+    /// Returns the direction, unit, and the value of the least support value that the fit predicts near a face with
+    /// the outward normal `normal`; `None` without a prediction.
     pub fn predict<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -203,12 +215,14 @@ impl SphereFit {
         }
     }
 
-    /// Returns a direction beside the least one, `lowest`, towards the unit normal of a face; `None` where
-    /// the face is as near.
+    /// Returns the direction of the upper bound, `lowest`, tilted towards the unit normal of a face; `None` if the
+    /// angle to the normal is less than 1.5 times the tilt or more than 60°, or if there is a first ring and k is less
+    /// than [`MIN_RING_K`].
     ///
-    /// On a sphere of radius ρ, with the origin at e = ρ − upper from its center, a chord between the
-    /// angles α and γ from the least direction is as far from the origin as the upper bound where
-    /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ.
+    /// On a sphere of radius ρ, with the origin at the distance e = ρ − upper from its center, a chord between the
+    /// angles α and γ from `lowest` is at least as far from the origin as the upper bound if
+    /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ. Corners at equal
+    /// angles are a *ring* around `lowest`; the first one is as wide as the gap allows.
     pub fn tilted_from_lowest<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -220,10 +234,10 @@ impl SphereFit {
     ) -> Option<Vec3> {
         let rho = self.sum();
         let along = normal.dot(lowest);
-        let across = normal - lowest * along;
-        let sine = across.norm();
+        let perpendicular = normal - lowest * along;
+        let sine = perpendicular.norm();
         let k = (1.0 - upper / rho).max(0.0).sqrt();
-        // The sines of the corners' angles; the second is that of the inner edge.
+        // The sines of the corners' angles from `lowest`.
         let sines = corners.each_ref().map(|v| {
             let cosine = |i: u16| set.dir(i.into()).dot(lowest);
             let c = lesser(cosine(v.pair.a), cosine(v.pair.b));
@@ -235,18 +249,18 @@ impl SphereFit {
         });
         let least = lesser(lesser(sines[0], sines[1]), sines[2]);
         let ratio = lesser((1.0 + k) / (1.0 - k), MAX_RING_RATIO);
-        // The first ring is as wide as a face may be within the gap.
+        // Faces as wide as the first ring are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
         let tilt = (ratio * least).max(first);
         if !(sine > 1.5 * tilt) || along < 0.5 || k < MIN_RING_K && least > 0.5 * first {
             return None;
         }
-        let dir = lowest + across * (tilt / sine);
+        let dir = lowest + perpendicular * (tilt / sine);
         Some(dir / dir.norm())
     }
 
-    /// Returns where to evaluate next about a face of these corners and this unit normal. `gap`: what the
-    /// bounds may be apart, metres.
+    /// Returns the next direction to evaluate for a face with these corners and this unit normal. `gap`: the allowed
+    /// difference of the bounds, metres.
     #[inline(never)]
     fn choose<const N: usize>(
         &mut self,
@@ -257,16 +271,16 @@ impl SphereFit {
         gap: f64,
     ) -> QueryDirection {
         self.update(set, upper.index);
-        let is_used = self.misses < MAX_FAILED_PREDICTIONS;
+        let is_used = self.failures < MAX_FAILED_PREDICTIONS;
         let predicted = is_used.then(|| self.predict(set, corners, normal));
         if let Some((dir, value)) = predicted.flatten() {
             if (value - upper.depth).abs() <= MIN_GAIN * gap {
-                // The least direction is what the fit predicts.
+                // The upper bound is what the fit predicts.
                 self.is_confirmed = true;
             }
             if value < upper.depth - MIN_GAIN * gap {
-                let choice = DirectionSource::Prediction;
-                return QueryDirection { dir, choice, value };
+                let source = DirectionSource::Prediction;
+                return QueryDirection { dir, source, value };
             }
         }
         let tilted = if self.is_confirmed && self.sum() > 0.0 {
@@ -274,21 +288,21 @@ impl SphereFit {
         } else {
             None
         };
-        let (dir, choice) = match tilted {
+        let (dir, source) = match tilted {
             Some(dir) => (dir, DirectionSource::Tilted),
             None => (*normal, DirectionSource::Normal),
         };
         let value = upper.depth;
-        QueryDirection { dir, choice, value }
+        QueryDirection { dir, source, value }
     }
 }
 
-/// The exact fits of the local query, whose minimum a prediction may be: e = f and the moves parallel but for
-/// rounding.
+/// The exact fits of the local search, whose result a prediction may be: e = f, and the changes of direction and
+/// vertex are parallel, within rounding.
 impl SphereFit {
-    /// Returns whether the centers of the spheres of obj1's entry `a` and obj2's entry `b` were found along two
-    /// directions each, as far apart as `tolerance`, metres, at most. The tip of a drop looks like the center of a
-    /// sphere from one direction, and the rim of a thin disc nearly so from several.
+    /// Returns whether two directions confirm the center of each sphere, that of obj1's entry and that of obj2's entry
+    /// in `pair`: the two estimates of a center differ by at most `tolerance` metres. From one direction the tip of a
+    /// drop fits a sphere, and from several nearby ones the rim of a thin disc nearly does.
     pub fn is_confirmed_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -296,22 +310,22 @@ impl SphereFit {
         tolerance: f64,
     ) -> bool {
         let [r1, r2] = self.radius;
-        let most = lesser(EXACT_CENTER_REL * self.sum(), tolerance);
+        let max_distance = lesser(EXACT_CENTER_REL * self.sum(), tolerance);
         let center1 = |i: usize| set.vertex1(i) - set.dir(i) * r1;
         let center2 = |i: usize| set.vertex2(i) + set.dir(i) * r2;
         let (a, b) = (usize::from(pair.a), usize::from(pair.b));
         let is_other =
             |i: usize, k: usize| k != i && (set.dir(k) - set.dir(i)).norm_squared() > 1e-8;
-        let is_twice = |radius: f64, i: usize, center: &dyn Fn(usize) -> Vec3| {
+        let is_confirmed = |radius: f64, i: usize, center: &dyn Fn(usize) -> Vec3| {
             let at = center(i);
             !(radius > 0.0)
-                || (0..set.len()).any(|k| is_other(i, k) && (center(k) - at).norm() <= most)
+                || (0..set.len()).any(|k| is_other(i, k) && (center(k) - at).norm() <= max_distance)
         };
-        is_twice(r1, a, &center1) && is_twice(r2, b, &center2)
+        is_confirmed(r1, a, &center1) && is_confirmed(r2, b, &center2)
     }
 
-    /// Returns whether the spheres that carry an answer were found twice: that of the upper bound's entry, and those of
-    /// the corners that share in the witness points.
+    /// Returns whether two directions confirm the spheres of a result: those of the upper bound's entry, and those of
+    /// the corners with a weight in the witness points.
     pub fn are_spheres_confirmed<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -326,14 +340,14 @@ impl SphereFit {
             })
     }
 
-    /// Returns the shares of the corners' spheres in the point of their core that is closest to the origin.
+    /// Returns the barycentric weights of the foot in the triangle of the corners' core points.
     fn weights<const N: usize>(&self, set: &VertexSet<N>, corners: &[Vertex; 3]) -> [f64; 3] {
         let [a, b, c] = self.core(set, corners);
         barycentric::triangle(&Vec3::zeros(), &a, &b, &c).weights
     }
 
-    /// Returns the witness points of unit `dir` on the spheres of the corners: where the line along it through the
-    /// origin meets the triangle of the centers.
+    /// Returns the witness points for unit `dir` on the spheres of the corners: the foot in the triangle of the core
+    /// points, which is on the line along `dir` through the origin, plus radius × direction.
     pub fn witnesses<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -352,7 +366,7 @@ impl SphereFit {
     }
 }
 
-/// Returns the radii of the spheres of obj1 and obj2 that two entries lie on, 0 where they do on none.
+/// Returns the radii of the spheres of obj1 and obj2 on which two entries lie; 0 for an object without one.
 #[inline(always)]
 fn fit_radii<const N: usize>(
     set: &VertexSet<N>,
@@ -361,7 +375,7 @@ fn fit_radii<const N: usize>(
     tolerance: &FitTolerance,
 ) -> [f64; 2] {
     let (m, n) = (set.dir(k), set.dir(i));
-    // e + f and e − f are products of the move with these two.
+    // e + f and e − f are the products of the change of vertex with these two.
     let (turn, sum) = (n - m, n + m);
     let turn2 = turn.norm_squared();
     let (from, to) = (set.coords(k), set.coords(i));
@@ -389,9 +403,9 @@ fn fit_radii<const N: usize>(
     })
 }
 
-/// Evaluates the support function for a face with these corners and this normal, which need not be unit:
-/// where the fit predicts the least support value, else beside the least direction, else along the normal.
-/// `along_normal`: along the normal. `gap` is what the bounds may be apart, metres.
+/// Evaluates the support function for a face with these corners and this normal, which need not be unit: along the
+/// direction that the fit predicts, else along the tilted direction, else along the normal. `along_normal`: true if
+/// it must be the normal. `gap`: the allowed difference of the bounds, metres.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -411,20 +425,20 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
         return Ok((query.evaluate(set, &unit_normal)?, DirectionSource::Normal));
     }
     let upper = query.upper;
-    let aim = fit.choose(set, corners, &unit_normal, &upper, gap);
-    let sample = query.evaluate(set, &aim.dir)?;
-    match aim.choice {
+    let next = fit.choose(set, corners, &unit_normal, &upper, gap);
+    let sample = query.evaluate(set, &next.dir)?;
+    match next.source {
         DirectionSource::Normal => {}
         DirectionSource::Prediction => {
             fit.is_confirmed =
-                sample.h < aim.value + PREDICTION_REL_TOL * (upper.depth - aim.value);
+                sample.h < next.value + PREDICTION_REL_TOL * (upper.depth - next.value);
             if !fit.is_confirmed {
-                fit.misses += 1;
+                fit.failures += 1;
                 fit.radius = [0.0; 2];
             }
         }
-        // On a sphere the least direction was the least one.
+        // If D is this sphere, no direction near the one of the upper bound has a lower support value.
         DirectionSource::Tilted => fit.is_confirmed = !(sample.h < upper.depth),
     }
-    Ok((sample, aim.choice))
+    Ok((sample, next.source))
 }

@@ -41,13 +41,13 @@ impl SupportPoint {
         larger(max_abs(&self.v1), max_abs(&self.v2))
     }
 
-    /// Returns the point at `share` (0 to 1) of the segment to `other`.
+    /// Returns the point at parameter `t` (0 to 1) of the segment to `other`.
     #[inline]
-    pub fn towards(&self, other: &Self, share: f64) -> Self {
+    pub fn towards(&self, other: &Self, t: f64) -> Self {
         Self {
-            v: self.v.lerp(&other.v, share),
-            v1: self.v1.lerp(&other.v1, share),
-            v2: self.v2.lerp(&other.v2, share),
+            v: self.v.lerp(&other.v, t),
+            v1: self.v1.lerp(&other.v1, t),
+            v2: self.v2.lerp(&other.v2, t),
         }
     }
 }
@@ -55,18 +55,19 @@ impl SupportPoint {
 /// Cause of a query without a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A support function returned a point that is not finite, or so large that the fourth power
-    /// of its distance from the other object's overflows.
+    /// A support function returned a point that is not finite, or the fourth power of |v1 − v2|
+    /// overflows (above 1e77 m).
     NonFinite,
     /// An allocation failed.
     NoMemory,
 }
 
-/// D = obj1 − obj2, evaluated by its support function. Counts the evaluations.
+/// D = obj1 − obj2, evaluated by its support function; counts the calls. Variables of this type are
+/// called `md`.
 pub struct MinkowskiDifference<A, B> {
     obj1: A,
     obj2: B,
-    /// Calls of both objects' support functions.
+    /// The number of calls of both objects' support functions.
     calls: Cell<u64>,
 }
 
@@ -91,7 +92,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         let v1 = self.obj1.support(dir);
         let v2 = self.obj2.support(&-dir);
         let v = v1 - v2;
-        // Solvers multiply four lengths, so a point whose product overflows counts as infinite.
+        // Solvers multiply four lengths, so a point for which that product overflows counts as infinite.
         // NaN and infinity in v1 or v2 fail this test too.
         let q = v.norm_squared();
         if !(q * q).is_finite() {
@@ -100,8 +101,8 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         Ok(SupportPoint { v, v1, v2 })
     }
 
-    /// Returns the support point of object 0 or 1 along direction `dir` of D (of obj2 along `-dir`); it
-    /// may be not finite.
+    /// Returns the support point of one object for direction `dir` of D: of obj1 along `dir` if `object` is
+    /// 0, else of obj2 along `-dir`. It is not tested for finite coordinates.
     #[inline]
     pub fn support_of_object(&self, object: usize, dir: &Vec3) -> Vec3 {
         self.calls.set(self.calls.get() + 1);

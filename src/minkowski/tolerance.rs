@@ -1,28 +1,31 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The one place that decides tolerances: the tolerance in force, the contact epsilon, rounding.
+//! The tolerances of the solvers: the effective tolerance, the contact epsilon, rounding. (The published
+//! method, [`crate::mpr::gao`], and the contact faces, [`crate::contact::face`], have rounding terms of
+//! their own.)
 //!
-//! Two lengths count. The *reach* is the largest distance of a vertex from the world's origin: a
-//! callback rounds its points to about an ulp of it, and so does the difference of two. The *size* is
-//! the largest distance of a point of D from the origin of D: arithmetic on points of D rounds to ulps
-//! of it. Far from the world's origin the reach is the larger one; it is never less than half the size.
+//! All follow from two lengths. The *world extent* is the largest distance of a vertex from the world's
+//! origin: callbacks round their points to about an ulp of it, and the difference of two points is rounded
+//! to the same. The *size* is the largest distance of a point of D from the origin of D: arithmetic on
+//! points of D rounds to ulps of it. The world extent is at least half the size, and larger than the size
+//! for objects far from the world's origin.
 
 use crate::math::{EPSILON, larger};
 use crate::minkowski::support::SupportPoint;
 
-/// The share of the depth that the bounds of a default query may be apart.
+/// The relative tolerance of a default query: the largest gap between the bounds, as a fraction of the depth.
 pub const GAP_REL: f64 = 1e-3;
-/// The share of the size above which no tolerance is in force: a coarser depth tells nothing.
+/// The largest effective tolerance, as a fraction of the size of D.
 const MAX_TOLERANCE_REL: f64 = 2.5e-4;
 
 /// The error of a triple product of points or edges of D, in ulps of the product of their lengths. Derived: 8
-/// for the products and their sums. Measured in double precision: callbacks that rotate a rim round its points
-/// by 25 ulps, and each of the three points is off by that. In single precision such a margin would be a
-/// depth of 3e-5 of the size.
+/// for the products and their sums. In double precision more is allowed, because support functions are less exact.
+/// Measured: those of rotated cylinders return points of the rim that are off by 25 ulps, and each of the three
+/// points can be. Not in single precision, where 256 ulps are a depth of 3e-5 of the size.
 pub const TRIPLE_PRODUCT_ULPS: f64 = if EPSILON < 1e-10 { 256.0 } else { 8.0 };
 
-/// The largest sizes seen of a pair, and the tolerances that follow from them.
+/// The largest lengths of a pair so far, and the tolerances that follow from them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Scale {
     size2: f64,
@@ -33,7 +36,7 @@ impl Scale {
     /// Takes a point into account.
     #[inline(always)]
     pub fn note(&mut self, point: &SupportPoint) {
-        // `larger` returns its second number where the first is NaN.
+        // `larger` returns its second number if the first is NaN.
         self.size2 = larger(point.v.norm_squared(), self.size2);
         let world_extent2 = larger(point.v1.norm_squared(), point.v2.norm_squared());
         self.world_extent2 = larger(world_extent2, self.world_extent2);
@@ -57,49 +60,49 @@ impl Scale {
         self.world_extent2.sqrt()
     }
 
-    /// Returns the support epsilon, metres: what a point of D is uncertain by. Derived: half an ulp for
-    /// each coordinate of each vertex as the callback rounds it, and of their difference.
+    /// Returns the support epsilon, metres: the error of a point of D. Derived: half an ulp of each
+    /// coordinate of each vertex as the callback rounds it, and of their difference.
     #[inline(always)]
     pub fn support_eps(&self) -> f64 {
         2.0 * EPSILON * self.world_extent()
     }
 
-    /// Returns the rounding of a unit vector times a point of D, metres. Derived: three products, two
+    /// Returns the rounding error of a unit vector times a point of D, metres. Derived: three products, two
     /// sums, and the length of the unit vector.
     #[inline(always)]
     pub fn product_eps(&self) -> f64 {
         4.0 * EPSILON * self.size()
     }
 
-    /// Returns the height below which a point is on a plane, metres: both are rounded.
+    /// Returns the height up to which a point counts as on a plane, metres: both are rounded.
     #[inline(always)]
     pub fn height_eps(&self) -> f64 {
         self.product_eps() + 2.0 * self.support_eps()
     }
 
-    /// Returns what two support values of one direction may differ by where they are equal, metres.
+    /// Returns the largest rounding difference of two equal support values of one direction, metres.
     #[inline(always)]
     pub fn tie_eps(&self) -> f64 {
         2.0 * self.height_eps()
     }
 
-    /// Returns the contact epsilon, metres: a support value no greater is no depth. The objects then
-    /// touch within rounding, and a touch is a miss, in every query.
+    /// Returns the contact epsilon, metres. Objects with a least support value of at most this are in contact
+    /// within rounding, and count as separated in every query.
     #[inline(always)]
     pub fn contact_eps(&self) -> f64 {
         4.0 * self.support_eps()
     }
 
-    /// Returns whether a support value is greater than the contact epsilon; `false` for NaN. It takes no
-    /// root, for which every step would wait.
+    /// Returns whether a support value is greater than the contact epsilon; `false` for NaN. Compares squares:
+    /// every step of a solver would wait for the square root.
     #[inline(always)]
     pub fn is_depth(&self, h: f64) -> bool {
         const CONTACT: f64 = 8.0 * EPSILON;
         h > 0.0 && h * h > CONTACT * CONTACT * self.world_extent2
     }
 
-    /// Returns the tolerance in force where `requested` is wanted, metres: no finer than the contact
-    /// epsilon, no coarser than [`MAX_TOLERANCE_REL`] of the size. NaN counts as infinite.
+    /// Returns the effective tolerance for the `requested` one, metres: it is lowered to [`MAX_TOLERANCE_REL`]
+    /// of the size, and raised to the contact epsilon. NaN counts as infinite.
     #[inline(always)]
     pub fn tolerance(&self, requested: f64) -> f64 {
         requested
@@ -111,18 +114,18 @@ impl Scale {
 /// Largest gap between the bounds at which a query stops.
 #[derive(Clone, Copy, Debug)]
 pub struct GapLimit {
-    /// Metres, as the caller wants it.
+    /// The absolute tolerance that the caller requested, metres.
     pub tolerance: f64,
-    /// The share of the depth; 0 for a query that proves the tolerance.
-    pub share: f64,
+    /// The relative tolerance, a fraction of the depth; 0 for a query that proves the absolute one.
+    pub rel_tol: f64,
 }
 
 impl GapLimit {
-    /// Returns the gap allowed below an upper bound, metres; `tolerance` is the one in force. A share of
-    /// the lower bound, which is the smaller one.
+    /// Returns the gap that is allowed below an upper bound, metres: the larger of the effective tolerance,
+    /// `tolerance`, and the relative one times the lower bound.
     #[inline(always)]
     pub fn allowed(&self, upper: f64, tolerance: f64) -> f64 {
-        larger(self.share / (1.0 + self.share) * upper, tolerance)
+        larger(self.rel_tol / (1.0 + self.rel_tol) * upper, tolerance)
     }
 }
 
@@ -144,13 +147,13 @@ mod tests {
         assert_eq!(scale.tolerance(0.0), scale.contact_eps());
         assert_eq!(scale.tolerance(1.0), 2.5e-4 * 5.0);
         assert_eq!(scale.tolerance(1e-3), 1e-3);
-        let touch = scale.contact_eps();
-        assert!(!scale.is_depth(0.5 * touch) && scale.is_depth(2.0 * touch));
+        let eps = scale.contact_eps();
+        assert!(!scale.is_depth(0.5 * eps) && scale.is_depth(2.0 * eps));
         assert!(!scale.is_depth(f64::NAN));
     }
 
     #[test]
-    fn nan_is_no_size_and_no_tolerance() {
+    fn nan_changes_no_size_and_is_the_largest_tolerance() {
         let mut scale = Scale::default();
         scale.note(&point(Vec3::x(), Vec3::zeros()));
         scale.note(&point(Vec3::repeat(f64::NAN), Vec3::zeros()));
@@ -159,10 +162,10 @@ mod tests {
     }
 
     #[test]
-    fn the_gap_is_a_share_of_the_lower_bound() {
+    fn the_gap_is_relative_to_the_lower_bound() {
         let gap = GapLimit {
             tolerance: 1e-6,
-            share: GAP_REL,
+            rel_tol: GAP_REL,
         };
         let allowed = gap.allowed(1.001, 1e-6);
         assert!((allowed - GAP_REL * (1.001 - allowed)).abs() < 1e-15);

@@ -9,19 +9,23 @@
 //!    single precision; more from another object, a wrong frame or an incomplete search.
 //! 2. Repetition: the same directions in the opposite order must return the same support values.
 //! 3. Center: it must not lie beyond any support plane.
+//!
+//! Outputs. With [`Check::not_finite`] nothing else is computed except `dir`, the direction of the point (zero if
+//! the center is not finite). With [`Check::opposite`] the center is not tested.
 
 use crate::math::{EPSILON, Vec3, larger, max_abs, perpendicular};
 use crate::minkowski::support::SupportMap;
 
-/// The directions: those of a hemisphere, their opposites, and the former tilted.
+/// The number of directions: those of a hemisphere, their opposites, and the former tilted.
 const NUM_DIRECTIONS: usize = 3 * NUM_HEMISPHERE;
-/// The directions of a hemisphere: the three axes and a spiral.
+/// The number of directions of a hemisphere: the three axes and a spiral.
 const NUM_HEMISPHERE: usize = 64;
-/// The tilt, radians. The point of a tilted direction is half the square of the tilt, in radii,
-/// below the support plane of a ball; greater noise is detected. Derived: half the square is some ulps.
+/// The angle of the tilt, radians. For a ball of radius r the point of the tilted direction is r · tilt² / 2 below
+/// the support plane of the original one; greater noise is detected. Derived: tilt² / 2 is 23 ulps
+/// (single precision: 4).
 const TILT_RAD: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
-/// Ulps of the largest coordinate that count as rounding: of the rotation and the translation of a
-/// point by a callback, and of its product with a direction. Derived, times two.
+/// The largest noise that counts as rounding, in ulps of the largest coordinate. Derived: the rotation and the
+/// translation of a point by a callback, and its product with a direction, times two.
 const ROUNDING_ULPS: f64 = 32.0;
 
 /// Result of [`check`](crate::check). Lengths are metres.
@@ -29,7 +33,7 @@ const ROUNDING_ULPS: f64 = 32.0;
 pub struct Check {
     /// A point or the center is not finite; nothing else is tested then.
     pub not_finite: bool,
-    /// The points are the farthest against the direction: a sign is wrong.
+    /// The points are the farthest ones along the opposite direction: a sign is wrong.
     pub opposite: bool,
     /// A point is beyond the support plane of another direction by more than rounding: a wrong
     /// frame, points of another object, a search that stops too early, or single precision.
@@ -38,7 +42,7 @@ pub struct Check {
     pub changes: bool,
     /// The center is outside: queries then miss overlaps and report overlaps of shapes that are apart.
     pub center_outside: bool,
-    /// Greatest width of the shape, approximately.
+    /// Approximate greatest width of the shape.
     pub size: f64,
     /// Greatest distance of a point beyond the support plane of another direction.
     pub noise: f64,
@@ -46,7 +50,7 @@ pub struct Check {
     pub change: f64,
     /// Distance of the center from the shape; negative inside. 0 without a center.
     pub outside: f64,
-    /// Direction of the worst fault, unit; meaningless where there is none.
+    /// Direction of the worst fault, unit; meaningless without a fault.
     pub dir: [f64; 3],
 }
 
@@ -105,7 +109,7 @@ fn golden_rotation(i: usize) -> (f64, f64) {
     (cos, sin)
 }
 
-/// Tests a support function and, where there is one, its center.
+/// Tests a support function and its center, if there is one.
 pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
     let mut points = [Vec3::zeros(); NUM_DIRECTIONS];
     let mut report = Check::default();
@@ -147,7 +151,7 @@ pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
 
 /// Compares each point with the support planes of all directions.
 fn check_planes(points: &[Vec3; NUM_DIRECTIONS], report: &mut Check, rounding: f64) {
-    // Planes that no point is in front of: all planes, where a sign is wrong.
+    // The planes that have all points on their outer side: all planes, if a sign is wrong.
     let mut num_opposite = 0;
     for (i, point) in points.iter().enumerate() {
         let n = direction(i);
@@ -192,7 +196,7 @@ mod tests {
     use core::cell::Cell;
 
     #[test]
-    fn directions_are_unit_and_all_around() {
+    fn directions_are_unit_and_cover_the_sphere() {
         for i in 0..NUM_DIRECTIONS {
             assert!((direction(i).norm() - 1.0).abs() < 4.0 * EPSILON);
         }

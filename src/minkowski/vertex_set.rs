@@ -6,6 +6,9 @@
 //! Entry i holds the vertex of obj1 and the vertex of obj2 that one support call of D returned, and the
 //! unit direction of that call. The coordinates of the two objects are interleaved, obj2's negated: a
 //! difference is then a sum, and one loop of two-lane operations finds the farthest vertex of both.
+//!
+//! A full set does not grow: [`VertexSet::push`] replaces the last entry. A caller that needs all of its
+//! entries tests [`VertexSet::is_full`] first.
 
 use crate::math::{Vec3, ZERO, larger};
 use crate::minkowski::support::SupportPoint;
@@ -28,17 +31,17 @@ pub struct Vertex {
     pub pair: VertexPair,
 }
 
-/// The known vertices of a pair: room for `N` support calls.
+/// The known vertices of a pair, from at most `N` support calls.
 pub struct VertexSet<const N: usize> {
     /// x, y and z of each entry: obj1's vertex, and minus obj2's.
     coords: [[[f64; 2]; N]; 3],
-    /// The unit direction of D that found each entry; zero for a point that no call returned.
+    /// The unit direction of the support call of each entry; zero for a point that no call returned.
     dirs: [Vec3; N],
     len: usize,
 }
 
 impl VertexPair {
-    /// Stands for the interior point, which is no difference of vertices.
+    /// The mark of the interior point, which is not a difference of known vertices.
     pub const INTERIOR: Self = Self {
         a: u16::MAX,
         b: u16::MAX,
@@ -58,9 +61,10 @@ impl<const N: usize> VertexSet<N> {
         dirs: [ZERO; N],
         len: 0,
     };
-    /// The bits of a dot product that hold the index of its vertex.
+    /// The low bits of a dot product that are replaced by the index of its vertex.
     const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
-    /// The bit above them, which is set: no product is zero then, and a maximum is one instruction.
+    /// The bit above the index, which is always set, so that no tagged product is ±0 and the maximum compiles to
+    /// one instruction.
     const INDEX_MARK: u64 = N.next_power_of_two() as u64;
 
     /// Returns an index that is in range for any `i`, so that no access is checked.
@@ -80,7 +84,7 @@ impl<const N: usize> VertexSet<N> {
         self.len
     }
 
-    /// Returns whether another entry has no room.
+    /// Returns whether there is no room for another entry.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
         self.len >= N
@@ -121,7 +125,7 @@ impl<const N: usize> VertexSet<N> {
         self.len = len;
     }
 
-    /// Returns the direction that found an entry, unit; zero for a point that no call returned.
+    /// Returns the direction of the support call of an entry, unit; zero for a point that no call returned.
     #[inline(always)]
     pub fn dir(&self, i: usize) -> Vec3 {
         self.dirs[Self::in_range(i)]
@@ -178,7 +182,7 @@ impl<const N: usize> VertexSet<N> {
         }
     }
 
-    /// Returns the known difference that is the support point of entry `i`.
+    /// Returns the indices of the support point of entry `i`: its own two vertices.
     #[inline(always)]
     pub fn pair_of_entry(i: usize) -> VertexPair {
         VertexPair {
@@ -187,14 +191,15 @@ impl<const N: usize> VertexSet<N> {
         }
     }
 
-    /// Returns the known difference farthest along `n`, which need not be unit; the first entry where
-    /// there is none.
+    /// Returns the known difference farthest along `n`, which need not be unit; the first entry if the set is
+    /// empty.
     ///
-    /// Indices ride in the low bits of the dot products, so that the maximum carries its index: vertices
-    /// that differ by less than 2⁻⁴² of a product tie. Callers compute heights from the coordinates.
+    /// The index of a vertex is in the low bits of its dot product, so that the maximum carries its index. Products
+    /// that differ by less than 2⁻⁴², relatively, count as equal; callers compute heights from the coordinates.
     #[inline(always)]
     pub fn farthest(&self, n: &Vec3) -> VertexPair {
-        // By value: a packed load of a vector that scalar stores have just written waits for them.
+        // Passed by value: a packed load of a vector that scalar stores have just written waits for them (no
+        // store-to-load forwarding).
         self.farthest_along(n.x, n.y, n.z)
     }
 
@@ -217,8 +222,8 @@ impl<const N: usize> VertexSet<N> {
         VertexPair { a, b }
     }
 
-    /// Returns how far the known difference farthest along the direction of entry `i` is beyond the
-    /// support point of that entry, metres.
+    /// Returns the height, metres, of the farthest known difference above the support plane of entry `i`: more than
+    /// rounding if a support function has contradicted itself.
     #[inline(always)]
     pub fn excess(&self, i: usize) -> f64 {
         let [x, y, z] = &self.coords;
@@ -288,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_are_kept_and_copied() {
+    fn entries_are_stored_and_copied() {
         let mut r = Random::new(2);
         let mut set = random_set::<4>(&mut r, 4);
         assert!(set.is_full());

@@ -3,25 +3,27 @@
 
 //! The penetration depth along a direction.
 //!
-//! [`along`]: the origin ray of W. Gao, Algorithm 1, followed to where it leaves D. The support plane that the ray meets first is the upper bound; where it crosses the
-//! portal, which is inscribed in D, less the rounding, is the lower bound once the origin is known to be in D.
+//! [`along`] follows the origin ray to the boundary of D (W. Gao, "Efficient Incremental Penetration Depth Estimation
+//! between Convex Geometries", Algorithm 1). Upper bound: the first support plane on the ray. Lower bound: the
+//! intersection of the ray and the portal, which is inscribed in D, minus the rounding error; it is valid once the
+//! origin is known to be in D.
 //!
 //! Departures: those of [`gao`]. The bounds are measured along the ray.
 //!
-//! Validity. `limit` is set wherever the bounds of [`along`] are farther apart than the tolerance in force,
-//! whatever ended the search. The overlap is not proven here.
+//! Outputs. `limit` is set if the bounds differ by more than the effective tolerance, whatever ended the search. The
+//! overlap is not proven here.
 
 use crate::contact::{Penetration, Settings};
 use crate::math::Vec3;
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
-use crate::mpr::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, answer, rounding};
+use crate::mpr::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, make_result, rounding};
 
-/// Follows the ray along unit `dir` to where it leaves D, as long as the origin is in D. Returns the
-/// answer with its lower bound, and the last portal, where there was one.
+/// Follows the ray along unit `dir` to the boundary of D. Requires the origin in D, which is not tested. Returns the
+/// result with its lower bound, and the last portal if there was one.
 ///
 /// # Errors
-/// [`Stop::Separated`]; a callback's answer that is not finite.
+/// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
 pub fn along<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     dir: &Vec3,
@@ -53,7 +55,7 @@ pub fn along<A: SupportMap, B: SupportMap>(
     };
     // `max` passes over NaN.
     let depth_lower = lower.max(0.0).min(depth);
-    // The finest tolerance in force: what a portal that faces the ray rounds by.
+    // The smallest effective tolerance: the rounding error for a portal perpendicular to the ray.
     let floor = FLOOR_ROUNDINGS * rounding(plane.point.magnitude());
     let hit = Penetration {
         depth,
@@ -62,15 +64,16 @@ pub fn along<A: SupportMap, B: SupportMap>(
         iterations: settings.max_iterations - budget,
         // Negated for NaN.
         limit: !(depth - depth_lower <= settings.tolerance.max(floor)),
-        ..answer(&plane, portal.as_ref())
+        ..make_result(&plane, portal.as_ref())
     };
     Ok((hit, portal))
 }
 
-/// The finest tolerance in force, in units of the rounding of a support point.
+/// The smallest effective tolerance, in units of the rounding error of a support point.
 const FLOOR_ROUNDINGS: f64 = 8.0;
 
-/// Returns the support plane that the ray meets first, of `plane` and those of the portal: all are sound.
+/// Returns the first of the support planes on the ray, among `plane` and those of the portal. All of them are sound
+/// upper bounds.
 fn first_met(dir: &Vec3, plane: SupportPlane, portal: Option<&Portal>) -> SupportPlane {
     let ray_parameter = |p: &SupportPlane| p.depth / dir.dot(&p.normal);
     let mut best = plane;
@@ -82,7 +85,7 @@ fn first_met(dir: &Vec3, plane: SupportPlane, portal: Option<&Portal>) -> Suppor
     best
 }
 
-/// Returns where the ray crosses the portal, less the rounding, metres.
+/// Returns the distance along the ray to the portal minus the rounding error, metres: a lower bound of the depth.
 fn inscribed(dir: &Vec3, portal: &Portal) -> f64 {
     let size = (portal.planes.iter()).fold(0.0, |m: f64, plane| m.max(plane.point.magnitude()));
     portal.normal().map_or(0.0, |n| {
@@ -96,10 +99,10 @@ mod tests {
     use crate::math::EPSILON;
     use crate::shapes::{Random, Rotation, difference, ellipsoid};
 
-    /// On an ellipsoid around the origin the ray along d leaves at 1 / |d / radii|; the
-    /// bounds hold it, from every direction.
+    /// The ray along d leaves an ellipsoid about the origin at 1 / |d / radii|: the bounds enclose that distance, for
+    /// every direction.
     #[test]
-    fn the_bounds_hold_where_the_ray_leaves() {
+    fn the_bounds_enclose_the_exit_of_the_ray() {
         let mut r = Random::new(1);
         let settings = Settings {
             tolerance: 1e-4,
@@ -120,10 +123,10 @@ mod tests {
         }
     }
 
-    /// Cones and cylinders nearly coincident, along grazing directions, at tolerance 0: no answer within the tolerance
-    /// has its bounds farther apart, and the depth is that of the least plane nearby.
+    /// Nearly coincident cylinders, along directions nearly perpendicular to the axis, at tolerance 0: `limit` is set
+    /// if the bounds have not met, and the depth is that of the support plane of `normal`.
     #[test]
-    fn open_bounds_are_told() {
+    fn unmet_bounds_set_limit() {
         let mut r = Random::new(2);
         let settings = Settings {
             tolerance: 0.0,

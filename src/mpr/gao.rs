@@ -16,15 +16,16 @@
 //! 5. *n = 2* (Sec. II-A), for shapes in a plane with unit normal m: the portal is a segment from v1 to v2,
 //!    kept as the triangle v1, v2, v2 + m, which has the segment's normal in the plane.
 //!
-//! Departures. The answer is the support plane (n, h(n)) of the least support value met, not the ray: sound,
-//! without another support call. Tests are signs of triple products; none has an absolute epsilon. A support
-//! plane that excludes the origin ends the search: the objects are apart. A ray through its own support point
-//! is stationary, and may be a maximum or a saddle: the search turns aside once and goes on. Planes below the
-//! last one, met on the way in another valley, are searched as well.
+//! Departures. The result is the support plane (n, h(n)) with the least support value, not the ray: it is sound, and
+//! takes no further support call. Tests are signs of triple products; none has an absolute epsilon. A support
+//! plane that excludes the origin ends the search: the objects are separated. The direction of a ray through its own
+//! support point is stationary, but may be a maximum or a saddle: the search perturbs it once and continues. If an
+//! earlier support plane is lower than the last one, in another valley (see [`crate::mpr::local`]), the search
+//! continues there.
 //!
-//! Validity. `depth`, `dir`: sound if the objects overlap, which is not proven here. `limit`: the iterations
-//! were used up before a local minimum. This is the method on support calls alone; the local query of this
-//! library is [`crate::mpr::local`].
+//! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `limit`: the iterations
+//! were used up before a local minimum was found. This is the method on support calls only; the local search of this
+//! library, on known vertices, is [`crate::mpr::local`].
 
 use crate::contact::{Penetration, Settings};
 use crate::gjk::barycentric;
@@ -32,23 +33,25 @@ use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
-/// The turn aside from a stationary direction, as a tangent: 6 degrees, which stays in the valley and finds a
-/// slope. The two parts have no simple ratio, so that no symmetry of a shape hides the slope.
+/// The perturbation of a stationary direction, as tangents along two perpendicular vectors: 6 degrees in all, small
+/// enough to stay in the valley and large enough to find a slope. The two have no simple ratio, so that no symmetry of
+/// a shape hides the slope.
 const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 
 /// Finds a local minimum of the penetration depth from the unit direction `start`: Algorithm 3, or with
-/// [`Until::Shortcut`] Algorithms 4 and 5. `plane_normal`: the unit normal of the plane that D lies in, where there is one;
-/// the search then starts along the part of `start` in it. `switched` gets |z| at each switch of the ray.
+/// [`Until::Shortcut`] Algorithms 4 and 5. `plane_normal`: for a D that lies in a plane, the unit normal of that plane;
+/// the search then starts along the component of `start` in the plane. `on_new_ray` is called with |z| whenever the ray
+/// changes, for tests.
 ///
 /// # Errors
-/// `Stop::Separated`; a callback's answer that is not finite.
+/// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
     plane_normal: Option<Vec3>,
     until: Until,
     settings: &Settings,
-    switched: impl FnMut(f64),
+    on_new_ray: impl FnMut(f64),
 ) -> Result<Penetration, Stop> {
     let start = match plane_normal {
         Some(m) => unit(&(start - m * m.dot(&start))).unwrap_or_else(|| perpendicular(&m)),
@@ -63,61 +66,61 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         budget: settings.max_iterations,
         best: ray,
     };
-    let ended = from_ray_to_ray(&mut search, ray, switched)?;
+    let ended = run_algorithm_3(&mut search, ray, on_new_ray)?;
     Ok(Penetration {
         iterations: settings.max_iterations - search.budget,
         limit: ended.is_none(),
-        ..ended.unwrap_or_else(|| answer(&search.best, None))
+        ..ended.unwrap_or_else(|| make_result(&search.best, None))
     })
 }
 
-/// The loop of Algorithm 3. `None`: a cap came first.
-fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
+/// Runs the loop of Algorithm 3. Returns `None` if the iterations are used up.
+fn run_algorithm_3<A: SupportMap, B: SupportMap>(
     search: &mut RaySearch<'_, A, B>,
     mut ray: SupportPlane,
-    mut switched: impl FnMut(f64),
+    mut on_new_ray: impl FnMut(f64),
 ) -> Result<Option<Penetration>, Stop> {
-    // The ray that was stepped aside from: stationary, its depth and witnesses exact.
+    // The stationary ray that was perturbed: its depth and witness points are exact.
     let mut perturbed_from: Option<SupportPlane> = None;
     loop {
         let next = match search.follow(&ray)? {
-            RayEnd::Touch => return Ok(Some(answer(&search.best, None))),
+            RayEnd::Touch => return Ok(Some(make_result(&search.best, None))),
             RayEnd::Limit(_) => return Ok(None),
             RayEnd::Shortcut(plane) => plane,
             RayEnd::Vertex => match perturbed_from {
                 None => {
                     perturbed_from = Some(ray);
-                    let across = match search.plane_normal {
+                    let perturbation = match search.plane_normal {
                         Some(m) => m.cross(&ray.normal) * PERTURBATION_TAN.0,
                         None => {
                             let e1 = perpendicular(&ray.normal);
                             e1 * PERTURBATION_TAN.0 + ray.normal.cross(&e1) * PERTURBATION_TAN.1
                         }
                     };
-                    let n = ray.normal + across;
+                    let n = ray.normal + perturbation;
                     ray = search.plane(n / n.norm())?;
-                    // No switch: the depth may rise.
+                    // No call of `on_new_ray`: the depth may rise.
                     continue;
                 }
-                // Stationary again: as good as it gets, unless a plane seen on the
-                // way is in a lower valley.
+                // Stationary again: the result, unless an earlier plane is in a lower
+                // valley.
                 Some(_) if search.best.depth < ray.depth - search.tolerance => search.best,
                 Some(first) => {
                     let lower = if first.depth < ray.depth { first } else { ray };
-                    return Ok(Some(answer(&lower, None)));
+                    return Ok(Some(make_result(&lower, None)));
                 }
             },
             RayEnd::Converged(last, plane) => {
                 let along = plane.normal.dot(&ray.normal);
                 let floor = search.tolerance.max(rounding(plane.point.magnitude()));
-                // |q| − |z|; NaN and a plane that holds the ray go on to the next
-                // ray only while the best plane falls.
+                // |q| − |z|. A gap that is NaN or infinite (a plane parallel to the ray) is not
+                // stationary.
                 let stationary = plane.depth / along - plane.depth <= floor;
                 let lower_elsewhere = search.best.depth < plane.depth - floor;
                 if stationary && !lower_elsewhere {
                     let hit = match &perturbed_from {
-                        Some(first) if first.depth <= plane.depth => answer(first, None),
-                        _ => answer(&plane, Some(&last)),
+                        Some(first) if first.depth <= plane.depth => make_result(first, None),
+                        _ => make_result(&plane, Some(&last)),
                     };
                     return Ok(Some(hit));
                 }
@@ -127,14 +130,14 @@ fn from_ray_to_ray<A: SupportMap, B: SupportMap>(
         if !search.take_iteration() {
             return Ok(None);
         }
-        switched(next.depth);
+        on_new_ray(next.depth);
         ray = next;
     }
 }
 
-/// The answer of a support plane. The witness points are where its portal's ray crosses
-/// the portal; without one, the two of its support point.
-pub fn answer(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
+/// Makes the result of a support plane. The witness points are those of the point at which the ray crosses
+/// `portal`; without a portal, those of the support point.
+pub fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
     let (point1, point2) = match portal {
         Some(p) => p.witnesses(),
         None => (plane.point.v1, plane.point.v2),
@@ -156,12 +159,12 @@ pub struct SupportPlane {
     pub normal: Vec3,
     /// The support point s(n).
     pub point: SupportPoint,
-    /// h(n) = n · s(n), a sound depth along n when it is not negative.
+    /// The support value h(n) = n · s(n), a sound depth along n if it is not negative.
     pub depth: f64,
 }
 
 impl SupportPlane {
-    /// Evaluates the support plane of the unit direction `normal`.
+    /// Evaluates the support plane with the unit normal `normal`.
     #[inline]
     pub fn of<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
@@ -177,25 +180,26 @@ impl SupportPlane {
     }
 }
 
-/// Three support points whose triangle the ray along `ray` crosses.
+/// A portal: three support points whose triangle the origin ray crosses.
 #[derive(Clone, Copy)]
 pub struct Portal {
     /// Unit direction of the origin ray.
     pub ray: Vec3,
-    /// The support planes of v1, v2, v3, ordered so that the triangle's normal looks
+    /// The support planes of v1, v2, v3, in the order in which the triangle's normal points
     /// along the ray.
     pub planes: [SupportPlane; 3],
 }
 
 impl Portal {
-    /// Outward unit normal of the triangle; `None` when it has no area.
+    /// Returns the outward unit normal of the triangle; `None` if it has no area.
     #[inline]
     pub fn normal(&self) -> Option<Vec3> {
         let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
         unit(&math::normal(a, b, c))
     }
 
-    /// The weights of the vertices where the ray crosses, times six volumes.
+    /// Returns the weights of the vertices in the point at which the ray crosses, not normalised: the three products
+    /// T.
     fn weights(&self) -> [f64; 3] {
         let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
         [
@@ -205,14 +209,14 @@ impl Portal {
         ]
     }
 
-    /// The portal in the plane with normal m, from one side of the ray to the other.
+    /// Makes the portal for n = 2, in the plane with normal m: a segment from one side of the ray to the other.
     fn segment(ray: Vec3, left: SupportPlane, right: SupportPlane, m: &Vec3) -> Self {
-        let mut beside = right;
-        beside.point.v += m;
-        beside.point.v1 += m;
+        let mut third = right;
+        third.point.v += m;
+        third.point.v1 += m;
         Self {
             ray,
-            planes: [left, right, beside],
+            planes: [left, right, third],
         }
     }
 
@@ -221,10 +225,10 @@ impl Portal {
     #[inline]
     pub fn update(&mut self, w: SupportPlane) {
         let c = self.ray.cross(&w.point.v);
-        // On which side of the plane through the ray and w each vertex is. With w the ray
-        // crosses the triangle of two vertices on opposite sides, so w takes the place of the
-        // third. The side of a vertex on that plane is rounding: the pair that is farthest on
-        // its two sides counts.
+        // The signs are the sides of the vertices relative to the plane through the ray and w.
+        // The ray crosses the triangle of w and two vertices on opposite sides, so w replaces the
+        // third. The side of a vertex on that plane is rounding, so the pair that is farthest on
+        // opposite sides is taken.
         let [t1, t2, t3] = self.planes.each_ref().map(|p| c.dot(&p.point.v));
         let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];
         let mut replaced = 2;
@@ -236,16 +240,16 @@ impl Portal {
         self.planes[replaced] = w;
     }
 
-    /// Returns the position of the triangle along the ray: |p|, negative behind the origin. A mean of
-    /// the vertices with weights T, which rounding does not move out of the triangle.
+    /// Returns the parameter of the triangle along the ray: |p|, negative behind the origin. It is the mean of the
+    /// vertices with the weights T, which rounding does not move out of the triangle.
     pub fn ray_parameter(&self) -> f64 {
         let t = self.weights();
-        let at = self.planes.each_ref().map(|p| self.ray.dot(&p.point.v));
-        (t[0] * at[0] + t[1] * at[1] + t[2] * at[2]) / (t[0] + t[1] + t[2])
+        let v = self.planes.each_ref().map(|p| self.ray.dot(&p.point.v));
+        (t[0] * v[0] + t[1] * v[1] + t[2] * v[2]) / (t[0] + t[1] + t[2])
     }
 
-    /// The points of obj1 and obj2 whose difference is where the ray crosses the
-    /// triangle: both are convex combinations of the objects' own support points.
+    /// Returns the points of obj1 and obj2 whose difference is the point at which the ray crosses the
+    /// triangle. Both are convex combinations of the objects' own support points.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         let points = self.planes.each_ref().map(|p| &p.point);
         let weights = self.weights().map(|t| t.max(0.0));
@@ -262,7 +266,8 @@ fn triple(a: &Vec3, b: &Vec3, c: &Vec3) -> f64 {
     a.dot(&b.cross(c))
 }
 
-/// Rounding of a support point of this size: below it a depth is zero, a gap a touch.
+/// Returns the rounding error of a support point whose largest coordinate is `size`, metres. A smaller depth or gap
+/// counts as 0.
 #[inline]
 pub fn rounding(size: f64) -> f64 {
     8.0 * EPSILON * size
@@ -270,57 +275,60 @@ pub fn rounding(size: f64) -> f64 {
 
 /// Reason why the search along a ray ended.
 pub enum RayEnd {
-    /// The ray leaves D between the portal and this support plane, which are no
-    /// farther apart than the tolerance.
+    /// The ray leaves D between the portal and this support plane, whose distance is at most
+    /// the tolerance.
     Converged(Portal, SupportPlane),
-    /// Algorithm 5's shortcut: the support value of this plane is no greater than
-    /// the distance |p| to the portal along the ray.
+    /// The shortcut of Algorithm 5: the support value of this plane is at most the
+    /// distance |p| to the portal along the ray.
     Shortcut(SupportPlane),
-    /// The ray passes through its own support point: it leaves D there, and its
-    /// direction is the normal of a support plane there (stationary).
+    /// The ray passes through its own support point and leaves D there: its direction is
+    /// stationary.
     Vertex,
-    /// The lowest plane has depth zero within rounding: no direction is shallower.
+    /// The least support value is 0 within rounding.
     Touch,
-    /// The iterations were used up; the last portal if there was one.
+    /// The iterations are used up. The last portal, if there was one.
     Limit(Option<Portal>),
 }
 
-/// Stop criterion of portal refinement.
+/// The stop criterion of portal refinement.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Until {
     /// The bounds meet along the normal (Algorithm 1).
     Normal,
-    /// The same, or Algorithm 5's shortcut.
+    /// The bounds meet along the normal, or the shortcut of Algorithm 5 applies.
     Shortcut,
     /// The bounds meet along the ray (directed penetration).
     Ray,
 }
 
-/// A query on its way from ray to ray; a separating direction ends it: [`Stop::Separated`].
+/// The state of a search from ray to ray. A separating direction ends it ([`Stop::Separated`]).
 pub struct RaySearch<'q, A, B> {
     /// The Minkowski difference.
     pub md: &'q MinkowskiDifference<A, B>,
-    /// Largest gap between the bounds, metres.
+    /// The largest gap between the bounds, metres.
     pub tolerance: f64,
-    /// The bounds that must meet.
+    /// The stop criterion.
     pub until: Until,
-    /// The normal of the plane that D is in, if it is in one.
+    /// For a D that lies in a plane, the unit normal of that plane.
     pub plane_normal: Option<Vec3>,
     /// The iterations left.
     pub budget: u64,
-    /// The lowest support plane met, one that separates included.
+    /// The support plane with the least support value so far, which may be a separating one.
     pub best: SupportPlane,
 }
 
 impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
-    /// Counts an iteration. Returns whether one was left.
+    /// Counts an iteration. Returns `false` if none was left.
     pub fn take_iteration(&mut self) -> bool {
         let left = self.budget > 0;
         self.budget = self.budget.saturating_sub(1);
         left
     }
 
-    /// The support plane of unit `n`.
+    /// Evaluates the support plane with the unit normal `n`.
+    ///
+    /// # Errors
+    /// [`Stop::Separated`] for a negative support value; [`Stop::Fault`] for a point that is not finite.
     #[inline]
     pub fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
         let plane = SupportPlane::of(self.md, n)?;
@@ -333,8 +341,8 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         Ok(plane)
     }
 
-    /// Follows the origin ray along `first.normal` to the boundary of D: Algorithm 1,
-    /// or Algorithm 5 of the paper.
+    /// Follows the origin ray along `first.normal` to the boundary of D, by Algorithm 1 or
+    /// Algorithm 5 of the paper.
     pub fn follow(&mut self, first: &SupportPlane) -> Result<RayEnd, Stop> {
         let found = match self.plane_normal {
             Some(m) => self.find_segment(first, &m)?,
@@ -347,8 +355,8 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     }
 
     /// Finds a portal of the ray along `first.normal` (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
-    /// Game Programming Gems 7). `Err`: there is none. `v0 = -d`, scaled to the portal's size, takes the place of
-    /// the interior point.
+    /// Game Programming Gems 7). The inner `Err` is the reason if there is none. The point v0 = −d, scaled to the
+    /// portal's size, takes the place of the interior point.
     fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
         let d = first.normal;
         if first.depth < 0.0 {
@@ -356,7 +364,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         }
         let size = first.point.magnitude();
         let side = first.point.v.cross(&d);
-        // Negated for NaN: a ray whose own support point cannot be told from it.
+        // Vertex: the support point is on the ray within rounding. The test is negated for NaN.
         let side = match unit(&side) {
             Some(unit) if side.norm() > rounding(size) => unit,
             _ => return Ok(Err(RayEnd::Vertex)),
@@ -365,8 +373,8 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         if !(second.depth > rounding(size.max(second.point.magnitude()))) {
             return Ok(Err(RayEnd::Touch));
         }
-        // T(v2, v1) = side · v2 · |v1 × d| > 0: with the two in this order a third
-        // point beyond the plane (v0, v1, v2) closes the cone.
+        // T(v2, v1) = side · v2 · |v1 × d| > 0. With the two in this order, a third
+        // point beyond the plane (v0, v1, v2) completes the portal.
         let mut portal = Portal {
             ray: d,
             planes: [second, *first, *first],
@@ -391,8 +399,9 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         Ok(Err(RayEnd::Limit(None)))
     }
 
-    /// The same in the plane with unit normal m. With side = m × d, T(d, v) = side · v: the left end
-    /// has a negative one, the right end a positive.
+    /// Finds a segment that the ray along `first.normal` crosses, in the plane with unit normal m. With side = m × d,
+    /// side · v is negative for the left end and positive for the right one. The inner `Err` is the reason if there is
+    /// none.
     fn find_segment(
         &mut self,
         first: &SupportPlane,
@@ -415,11 +424,11 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         Ok(Ok(Portal::segment(first.normal, left, right, m)))
     }
 
-    /// Portal refinement: the loop of Algorithms 1 and 5, from a portal on.
+    /// Refines a portal: the loop of Algorithms 1 and 5.
     pub fn refine(&mut self, mut portal: Portal) -> Result<RayEnd, Stop> {
         while self.take_iteration() {
-            // Three points on a line, or so near that rounding turns their triangle over:
-            // the arithmetic cannot split it further.
+            // Without a normal along the ray the three points are on a line within rounding,
+            // and the portal cannot be refined further.
             let Some(n) = portal.normal().filter(|n| n.dot(&portal.ray) > 0.0) else {
                 break;
             };
@@ -428,13 +437,13 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             let size = (portal.planes.iter()).fold(0.0, |m, p| larger(m, p.point.magnitude()));
             let floor = rounding(size);
             let plane = match self.plane(n) {
-                // D holds the portal: a callback that answers less than it is wrong.
+                // The portal is in D: a callback with a support value below it is wrong.
                 Err(Stop::Separated(_)) if inner > floor => SupportPlane {
                     normal: n,
                     point: portal.planes[0].point,
                     depth: inner,
                 },
-                answer => answer?,
+                evaluated => evaluated?,
             };
             let mut gap = plane.depth - inner;
             let mut least = floor;
@@ -442,12 +451,12 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
             if self.until == Until::Ray {
                 gap /= along;
                 least /= along;
-                // The rounding is taken off the lower bound.
+                // The rounding error is subtracted from the lower bound.
                 most -= least;
             }
-            // Within the tolerance, and the origin on the inner side of the portal by more than
-            // rounding: a support plane that may still exclude the origin is no answer yet.
-            // NaN (a plane that holds the ray) ends the loop.
+            // Converged: the gap is within the tolerance, and the origin is on the inner side of the
+            // portal by more than rounding, so that the support plane does not exclude the origin.
+            // NaN (a plane parallel to the ray) ends the loop too.
             if !(gap > least) || (gap <= most && inner > floor) {
                 return Ok(RayEnd::Converged(portal, plane));
             }
@@ -515,7 +524,7 @@ mod tests {
         }
 
         /// The paper's Algorithm 2 from the boundary point `v`: the plane at v, the
-        /// origin's projection z on it, the boundary on the way to z. `each` sees |z|.
+        /// origin's projection z on it, the boundary point along z. `each` is called with |z|.
         fn sqp(&self, mut v: Vec3, mut each: impl FnMut(f64)) -> Vec3 {
             for _ in 0..3000 {
                 let n = self.normal(&v);
@@ -527,8 +536,8 @@ mod tests {
         }
     }
 
-    /// Algorithm 2 about the origin: |z| never rises, and the fixed point is the end of
-    /// the shortest axis, whose normal is that axis.
+    /// Algorithm 2 on an ellipsoid about the origin: |z| never rises, and the fixed point is the
+    /// end of the shortest axis.
     #[test]
     fn algorithm_2_ends_on_the_shortest_axis() {
         let mut r = Random::new(1);
@@ -547,8 +556,8 @@ mod tests {
         }
     }
 
-    /// Algorithm 2 off the center: at the fixed point v is parallel to its own normal, and
-    /// Algorithm 3, which knows the support mapping alone, takes the same steps to it.
+    /// Algorithm 2 on an ellipsoid off the origin: at the fixed point v is parallel to its normal.
+    /// Algorithm 3, which has only the support function, takes the same steps to it.
     #[test]
     fn algorithm_3_takes_the_steps_of_algorithm_2() {
         let mut r = Random::new(2);
@@ -600,8 +609,8 @@ mod tests {
         })
     }
 
-    /// Algorithm 3 and Algorithms 4, 5 end in a local minimum each; started near the
-    /// minimum, in none that is higher. |z| falls strictly at each switch of the ray.
+    /// Algorithm 3 and Algorithms 4, 5 end in a local minimum each; started near a
+    /// minimum, in no higher one. |z| falls strictly at each change of the ray.
     #[test]
     fn with_and_without_the_shortcut() {
         let mut r = Random::new(3);
@@ -624,7 +633,7 @@ mod tests {
                 assert!(is_local_minimum(&md, &hit, &mut r));
                 let h = hit.normal.dot(&md.support(&hit.normal).unwrap().v);
                 assert!((h - hit.depth).abs() < 32.0 * EPSILON);
-                // From a degree beside it both come back to it, or lower.
+                // From a nearby direction both return to it, or to a lower one.
                 let near = unit(&(hit.dir + r.vector(0.01))).unwrap();
                 for shortcut in [Until::Normal, Until::Shortcut] {
                     let again = solve(&md, near, shortcut, |_| ());
@@ -636,9 +645,9 @@ mod tests {
         assert!(supports[1] < supports[0], "{supports:?}");
     }
 
-    /// Started along its own support point at a maximum: the search steps aside.
+    /// Started at a maximum, along its own support point, the search perturbs the direction.
     #[test]
-    fn steps_aside_from_a_maximum() {
+    fn a_maximum_is_left() {
         // A ball on the axis of a capsule: 1.3 along the axis, 1.0 across it.
         let md = difference(
             ball(Vec3::zeros(), 0.5),
@@ -678,7 +687,7 @@ mod tests {
         }
     }
 
-    /// A box on itself: any of three faces is a local minimum, no less and no more.
+    /// A box on itself: the result is the depth of one of the three pairs of faces.
     #[test]
     fn a_box_on_itself() {
         let cube = corners(Vec3::new(0.5, 0.4, 0.3));
@@ -691,7 +700,7 @@ mod tests {
         }
     }
 
-    /// Checks that every iteration limit gives a sound answer and is reported.
+    /// Checks that the result is sound, and `limit` set, for every iteration limit.
     #[test]
     fn the_iteration_limit_is_reported() {
         let mut r = Random::new(6);
@@ -720,12 +729,12 @@ mod portal_tests {
 
     const ULPS: f64 = 100.0 * EPSILON;
 
-    /// D itself, as the difference to a point.
+    /// Returns the difference of `d` and the origin, which is `d`.
     fn alone<'a>(d: impl SupportMap + 'a) -> MinkowskiDifference<Shape<'a>, Shape<'a>> {
         difference(d, |_: &Vec3| Vec3::zeros())
     }
 
-    /// A search that begins with this plane.
+    /// Returns a search that begins with the plane `best`.
     fn search<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         best: SupportPlane,
@@ -743,7 +752,7 @@ mod portal_tests {
         }
     }
 
-    /// The three products T of a portal; none is negative by more than rounding.
+    /// Returns whether the ray crosses the portal: none of the three products T is negative by more than rounding.
     fn crosses(p: &Portal) -> bool {
         let [a, b, c] = p.planes.each_ref().map(|x| &x.point.v);
         [(a, b), (b, c), (c, a)]
@@ -751,7 +760,7 @@ mod portal_tests {
             .all(|(x, y)| triple(&p.ray, x, y) >= -ULPS)
     }
 
-    /// Returns where the ray crosses the plane of the portal, and where the support plane.
+    /// Returns the parameters at which the ray crosses the plane of the portal and the support plane.
     fn reaches(p: &Portal, plane: &SupportPlane) -> (f64, f64) {
         let along = plane.normal.dot(&p.ray);
         (
@@ -760,8 +769,8 @@ mod portal_tests {
         )
     }
 
-    /// Algorithm 1 for the ray `d`: the exit, with its invariants checked against the
-    /// distance `exact` at which the ray leaves D.
+    /// Checks Algorithm 1 for the ray `d`: its invariants and its result, against the distance
+    /// `exact` at which the ray leaves D.
     fn check<A: SupportMap>(support: A, d: Vec3, exact: f64, tolerance: f64) {
         let md = alone(support);
         let first = SupportPlane::of(&md, d).unwrap();
@@ -773,8 +782,8 @@ mod portal_tests {
                 for p in &found.planes {
                     assert_eq!(md.support(&p.normal).unwrap(), p.point);
                 }
-                // By hand: every update keeps the ray inside, and the portal only
-                // moves on along it (it may begin behind the origin).
+                // Step by step: the ray crosses every updated portal, whose parameter along the
+                // ray only grows (it may be negative at first).
                 let mut portal = found;
                 let mut before = f64::NEG_INFINITY;
                 for _ in 0..8 {
@@ -824,12 +833,12 @@ mod portal_tests {
             let half = Vec3::from_fn(|_, _| r.within(0.3, 2.0));
             let turn = r.rotation();
             let at = half.map(|h| r.within(-0.9, 0.9) * h);
-            // Off the center; every tenth ray along an axis, through the middle of a face.
+            // The origin is off the center; every tenth ray is along an axis, through the middle of a face.
             let (at, d) = match round % 10 {
                 0 => (Vec3::zeros(), Vec3::ith(round / 10 % 3, 1.0)),
                 _ => (at, r.direction()),
             };
-            // Slabs: the nearest of the three planes ahead.
+            // The closest of the three planes along the ray.
             let exact = (0..3).fold(f64::INFINITY, |t, i| {
                 t.min((half[i].copysign(d[i]) + at[i]) / d[i]).max(0.0)
             });
@@ -838,10 +847,9 @@ mod portal_tests {
         }
     }
 
-    /// The origin outside: every search ends with a direction that separates, or has the
-    /// ray pass D by (no portal on this side).
+    /// With the origin outside D the search ends with a direction that separates.
     #[test]
-    fn outside_is_found_out() {
+    fn an_origin_outside_is_separated() {
         let mut r = Random::new(3);
         for _ in 0..500 {
             let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
@@ -859,9 +867,9 @@ mod portal_tests {
         }
     }
 
-    /// Checks that a budget that is too small is reported, and that none is exceeded.
+    /// Checks that a budget that is too small is reported, and is not exceeded.
     #[test]
-    fn budget() {
+    fn budgets_are_kept_and_reported() {
         let mut r = Random::new(4);
         for given in 0..20 {
             let radii = Vec3::new(1.0, 0.7, 0.5);
@@ -890,7 +898,7 @@ mod planar_tests {
         max_iterations: 2000,
     };
 
-    /// A frame of the plane: axes x, y, normal m, and a point of it off the origin.
+    /// Returns a random rotation, the axes x, y and the normal m of a plane, and a point of the plane.
     fn frame(r: &mut Random) -> (Rotation, Vec3, Vec3, Vec3, Vec3) {
         let turn = r.rotation();
         let [x, y, m] = [0, 1, 2].map(|i| turn * Vec3::ith(i, 1.0));
@@ -917,7 +925,7 @@ mod planar_tests {
         assert!(!hit.limit);
         assert!(hit.dir.dot(m).abs() < ulps, "leaves the plane");
         assert!((hit.dir.norm() - 1.0).abs() < ulps);
-        // Sound, and the witnesses are on the two planes.
+        // The depth is sound, and the witness points are on the two support planes.
         let s = md.support(&hit.dir).unwrap();
         assert!((hit.dir.dot(&s.v) - hit.depth).abs() < ulps);
         let room = SETTINGS.tolerance + ulps;
@@ -949,21 +957,21 @@ mod planar_tests {
                 (-100.0 * EPSILON..10.0 * SETTINGS.tolerance).contains(&error),
                 "{error:e}"
             );
-            // And from the stationary direction that is a maximum.
+            // The same from the stationary direction that is a maximum.
             let hit = solve(&md, &m, -way);
             let error = hit.depth - (1.5 - distance);
             assert!(
                 (-100.0 * EPSILON..10.0 * SETTINGS.tolerance).contains(&error),
                 "{error:e}"
             );
-            // Started at the minimum: that, exactly.
+            // Started at the minimum, the result is exact.
             let hit = solve(&md, &m, way);
             assert!((hit.depth - (1.5 - distance)).abs() < 100.0 * EPSILON);
         }
     }
 
-    /// Polygons: the answer is the support value of an edge of one of the two, and no
-    /// other direction near it is lower; the best from all edges is the least of them.
+    /// Polygons: the depth is the support value of an edge of one of the two, and no
+    /// nearby direction is lower; the least depth from all edges is the least support value of them.
     #[test]
     fn polygons() {
         let mut r = Random::new(2);
@@ -1013,9 +1021,9 @@ mod planar_tests {
         }
     }
 
-    /// Polygons apart by a hundredth: a miss with a direction of the plane that separates.
+    /// Squares with a gap of a hundredth: a direction in the plane separates them.
     #[test]
-    fn apart() {
+    fn separated_squares() {
         let mut r = Random::new(3);
         for _ in 0..300 {
             let (_, x, y, m, at) = frame(&mut r);
@@ -1029,7 +1037,7 @@ mod planar_tests {
                     assert!(n.dot(&m).abs() < 100.0 * EPSILON);
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
-                // A local minimum behind the other square: not yet a proven overlap.
+                // A local minimum on the far side of the other square: the overlap is not proven here.
                 Ok(hit) => assert!(!hit.limit && hit.dir.dot(&by) < 0.0),
                 other => panic!("{other:?}"),
             }

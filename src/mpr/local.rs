@@ -1,31 +1,37 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! A local minimum of the penetration depth: a walk from portal to portal on the known vertices.
+//! The local search: finds a local minimum of the penetration depth by a walk from portal to portal on the known
+//! vertices.
 //!
-//! Reference: W. Gao, "Efficient Incremental Penetration Depth Estimation between Convex Geometries",
-//! Algorithm 4. Rays start at the origin.
+//! Reference: W. Gao, "Efficient Incremental Penetration Depth Estimation between Convex Geometries", Algorithm 4.
 //!
-//! 1. *Portal* of the ray along the start direction ([`discover`]), moved outwards by known differences
-//!    alone, as far as they go: the face of the inner model that the ray leaves through.
-//! 2. *Minimum*: the foot of the perpendicular from the origin is in the face, and the least support value
-//!    met is at its distance, in a direction that the face contains: done, after step 6.
-//! 3. *Valley*: the face is farther than the least support value: the next ray is along its direction.
-//! 4. *Prediction* of the sphere fits, else of Newton's direction of a smooth D ([`newton_step`]): queried where
-//!    it gains, and the next ray is along it where it comes true. One that is the least support value already, or
-//!    comes true to half of the tolerance, is a minimum as well.
-//! 5. *Normal*: the foot is outside: the next ray is along the face's normal, without a callback. The foot
-//!    is inside: the normal is queried, and is a minimum where nothing is above the face.
-//! 6. *Confirmation*: a foot on an edge is stationary and need not be a minimum, nor is a tip that looks like
-//!    a sphere. Directions tilted by [`TILT_RAD`] are queried where no known one is near.
-//! 7. *Overlap*: the tetrahedron of the interior point and the face holds the origin; otherwise GJK shows it on
-//!    the known vertices, or a queried direction separates.
+//! Terms. A *ray* starts at the origin of D. The *foot* of a face is the projection of the origin on its plane. The
+//! *valley* of a minimum is the set of directions from which descent of the support function ends in it. The *upper
+//! bound* is the least support value evaluated, with its direction.
 //!
-//! Departures. The outer steps of the paper's Algorithm 4, a support call each, are steps of the inner model
-//! here. A fixed ray is never refined until the callbacks confirm it. Steps 4 and 6 are new.
+//! 1. *Portal*: find one for the ray ([`discover`]), at first along the start direction, and refine it with known
+//!    differences as long as one is above it. This gives the face of the inner model through which the ray leaves.
+//! 2. *Minimum*: if the foot is in the face, the upper bound is equal to its distance, and the direction of the upper
+//!    bound is in the cone of the face, the direction is a candidate: go to step 6.
+//! 3. *Other valley*: if the face is farther from the origin than the upper bound, the next ray is along the direction
+//!    of the upper bound.
+//! 4. *Prediction* of the sphere fits, else of a Newton step on a smooth D ([`newton_step`]): evaluated if it would
+//!    lower the upper bound. If the evaluated value agrees, the next ray is along it. A prediction that is equal to the
+//!    upper bound, or agrees with the evaluated value within half of the tolerance, is a candidate.
+//! 5. *Normal*: if the foot is outside the face, the next ray is along the face's normal, without a callback. If it is
+//!    inside, the normal is evaluated, and is a candidate if no point is above the face.
+//! 6. *Confirmation* of a candidate: a foot on an edge may be a saddle, and a sharp tip can satisfy the sphere fit.
+//!    Both are tested by directions tilted by [`TILT_RAD`], which are evaluated if no known direction is near.
+//! 7. *Overlap*: proven if the tetrahedron of interior point and face contains the origin, else by GJK; or an evaluated
+//!    direction separates.
 //!
-//! Validity. [`Status::Converged`]: the overlap is proven, `dir` is a local minimum of the support function,
-//! the witness points meet and lie in their bodies. Any other status: `depth` and `dir` are sound if the
+//! Departures. An outer step of the paper's Algorithm 4 takes a support call; here it is a step on the inner model.
+//! Unlike in the paper, a ray is not followed until callbacks confirm its portal: it is left as soon as the inner model
+//! suggests a better one. Steps 4 and 6 are new.
+//!
+//! Outputs. [`Status::Converged`]: the overlap is proven, `dir` is a local minimum of the support function, and the
+//! witness points are in their bodies, `depth` apart along `dir`. Any other status: `depth` and `dir` are sound if the
 //! objects overlap, which is not proven: use the global query.
 //!
 //! The file is longer than 400 lines: a walk is one loop, and its tests of a face share the walk's state.
@@ -44,19 +50,21 @@ use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::newton::newton_step;
 use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS, discover, replace_corner};
 
-/// The support calls of a walk, at most. Measured: 12 of 12,000 walks on the pair sets end without a minimum.
+/// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
+/// minimum.
 pub const MAX_WALK_POINTS: usize = 60;
-/// The tilt of the queries that confirm a minimum, radians: as far beside a stationary direction it must not
-/// be lower. Also the width below which a face is narrow.
+/// The tilt of the directions that confirm a minimum, radians: no support value at this angle may be lower.
 const TILT_RAD: f64 = 0.015;
-/// The least cosine between a face's normal and the direction of the least support value for the next ray to be
-/// the normal: 11 degrees, the same valley. Measured on hulls from 5 degrees: 0.9 leaves it in 2.2 % of the pairs
-/// for 1.0 %.
+/// The width of a face, radians as seen from the origin, below which it is narrow.
+const NARROW_FACE_RAD: f64 = TILT_RAD;
+/// The least cosine between a face's normal and the direction of the upper bound at which they count as in the same
+/// valley: 11 degrees. Measured on hulls, started 5 degrees from a minimum: with 0.9 2.2 % of the pairs end in another
+/// minimum, with 0.98 1.0 %.
 const SAME_VALLEY_COS: f64 = 0.98;
-/// Half of the square of the angle below which two directions are one.
+/// Half of the square of the angle, radians, below which two directions count as the same.
 const SAME_DIR_EPS: f64 = 1e-13;
 
-/// A face of the inner model: the portal that a ray ended with.
+/// A face of the inner model: the last portal of a ray.
 #[derive(Clone, Copy)]
 struct Face {
     corners: [Vertex; 3],
@@ -67,7 +75,7 @@ struct Face {
 }
 
 impl Face {
-    /// Returns the face of three corners; `None` where they lie on a line.
+    /// Returns the face of three corners; `None` if they lie on a line.
     fn new(corners: &[Vertex; 3]) -> Option<Self> {
         let [a, b, c] = corners.each_ref().map(|v| v.w);
         let normal = normalise_unscaled(&(b - a).cross(&(c - a)))?;
@@ -78,7 +86,7 @@ impl Face {
         })
     }
 
-    /// Returns whether the foot of the origin is in the face, or outside by `eps`, metres, at most.
+    /// Returns whether the foot is in the face, or at most `eps`, metres, outside.
     fn has_foot(&self, eps: f64) -> bool {
         (0..3).all(|i| {
             let (side, length2) = self.side(i);
@@ -86,15 +94,15 @@ impl Face {
         })
     }
 
-    /// Returns the distance of a foot in the face from the closest edge, metres.
-    fn inset(&self) -> f64 {
+    /// Returns the distance of the foot from the closest edge, metres; negative outside the face.
+    fn foot_depth(&self) -> f64 {
         (0..3).fold(f64::INFINITY, |least, i| {
             let (side, length2) = self.side(i);
             lesser(side / length2.sqrt(), least)
         })
     }
 
-    /// Returns the distance of the foot from the line of edge `i`, positive inside, times the length of the edge,
+    /// Returns the distance of the foot from the line of edge `i`, positive inside, times the length of the edge;
     /// and the square of that length.
     fn side(&self, i: usize) -> (f64, f64) {
         let edge = self.edge(i);
@@ -107,8 +115,9 @@ impl Face {
         self.corners[(i + 1) % 3].w - self.corners[i].w
     }
 
-    /// Returns the unit vector in the face across its longest edge. The floor of a valley crosses that edge.
-    fn across(&self) -> Vec3 {
+    /// Returns the unit vector in the face's plane perpendicular to its longest edge: the direction of descent if the
+    /// face is narrow and its foot is not the minimum.
+    fn perpendicular_to_longest_edge(&self) -> Vec3 {
         let mut longest = self.edge(0);
         for i in 1..3 {
             if self.edge(i).norm_squared() > longest.norm_squared() {
@@ -120,22 +129,22 @@ impl Face {
     }
 }
 
-/// The result of a portal.
+/// The result of the refinement of a portal.
 enum WalkStep {
-    /// The walk goes on with the ray along this unit vector.
+    /// The next ray is along this unit vector.
     Ray(Vec3),
-    /// The foot is in the face, and this support plane is at its distance.
+    /// A candidate: the foot is in the face, and this support plane is at the same distance.
     Face { dir: Vec3, depth: f64 },
-    /// A prediction came true.
+    /// A candidate: the prediction of this model agrees with the evaluated support value.
     Fit(Model),
 }
 
-/// The shape of D near the least support value, as a prediction takes it.
+/// The model of D near the upper bound from which a prediction is made.
 #[derive(Clone, Copy)]
 enum Model {
     /// The sphere fit.
     Sphere,
-    /// Smooth, and the flattest along this unit vector across the direction.
+    /// A smooth D, which is flattest along this unit vector perpendicular to the direction.
     Smooth(Vec3),
 }
 
@@ -148,9 +157,11 @@ struct Prediction {
     value: f64,
 }
 
-/// Why a walk ends without a minimum.
+/// Reason why a walk ends without a minimum.
 enum WalkEnd {
+    /// An evaluation ended the query.
     Stop(Stop),
+    /// A limit, rounding or an inconsistent support function ended the walk.
     Status(Status),
 }
 
@@ -167,23 +178,27 @@ struct Minimum {
     points: [Vec3; 2],
 }
 
-/// A walk on its way.
+/// The state of a walk.
 struct Walk<'w, 'q, A, B, const N: usize> {
     query: &'w mut SupportQuery<'q, A, B>,
     set: &'w mut VertexSet<N>,
     fit: SphereFit,
     settings: &'w Settings,
-    /// The centers' difference, else the middle of the support points along the start and against it.
+    /// The difference of the centers, else the middle of the support points along the start direction and opposite
+    /// to it.
     interior: Vec3,
-    /// The interior point is the centers' difference.
+    /// True if the interior point is the difference of the centers.
     is_centered: bool,
     iterations: u64,
-    sphere_misses: u32,
-    newton_misses: u32,
+    /// The number of failed predictions of the sphere fits.
+    sphere_failures: u32,
+    /// The number of failed predictions of Newton's step.
+    newton_failures: u32,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`. The set may hold entries. See
-/// the head of this file.
+/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. The set
+/// may have entries. Any status but [`Status::Converged`] comes with the upper bound and the vertices of its support
+/// point.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -202,13 +217,13 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         fit: SphereFit::exact(),
         settings,
         iterations: 0,
-        sphere_misses: 0,
-        newton_misses: 0,
+        sphere_failures: 0,
+        newton_failures: 0,
     };
     let (minimum, mut status) = match walk.run(start) {
         Ok(minimum) => (minimum, Status::Converged),
         Err(WalkEnd::Stop(stop)) => return Err(stop),
-        Err(WalkEnd::Status(status)) => (walk.lowest(), status),
+        Err(WalkEnd::Status(status)) => (walk.upper_bound(), status),
     };
     let [point1, point2] = minimum.points;
     let hit = Penetration {
@@ -220,7 +235,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         iterations: walk.iterations,
         ..Penetration::default()
     };
-    // A face is as far from its support plane as both are rounded.
+    // A face and its support plane differ by the rounding of both.
     let tolerance = walk.tolerance() + walk.query.scale.height_eps();
     if status == Status::Converged && !hit.has_sound_witnesses(tolerance) {
         status = Status::Rounding;
@@ -231,20 +246,21 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
     fn run(&mut self, start: &Vec3) -> Result<Minimum, WalkEnd> {
-        let ahead = self.query.evaluate(self.set, start)?;
+        let first = self.query.evaluate(self.set, start)?;
         let has_center = self.query.interior.is_some();
         if !has_center {
-            // Aslant: the point opposite to a minimum mostly is on one line with it and the origin.
-            let aslant = perpendicular(start) * TILT_RAD - start;
-            // Not in the set: a wide corner would lead the portals astray.
-            let behind = self
+            // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
+            let opposite_dir = perpendicular(start) * TILT_RAD - start;
+            // Not stored in the set: as a corner it would make the portals wide.
+            let opposite = self
                 .query
-                .evaluate_point(&(aslant / aslant.norm()))
+                .evaluate_point(&(opposite_dir / opposite_dir.norm()))
                 .map_err(Stop::from)?;
-            self.interior = (ahead.w + behind.v) * 0.5;
+            self.interior = (first.w + opposite.v) * 0.5;
         }
         let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
-        // A start that leads to the far side, and any without a center: the way from the interior point as well.
+        // Without centers, or if the start direction leads to the far side: evaluate the direction from the interior
+        // point to the origin too.
         if !has_center || to_origin.dot(start) < 0.0 {
             self.query.evaluate(self.set, &to_origin)?;
         }
@@ -254,7 +270,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             self.check_limits()?;
             let first = self.set.farthest_vertex(&ray);
             let length = self.length_along(&ray, &first);
-            // A ring around the ray is as wide as the directions that confirm a minimum.
+            // The ring's tilt is half of that of the directions that confirm a minimum.
             let portal = discover(
                 self.query,
                 self.set,
@@ -280,7 +296,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         self.query.scale.tolerance(self.settings.tolerance)
     }
 
-    /// Returns the length of the ray in D from behind the origin, about, metres.
+    /// Returns the approximate length of the ray in D from the interior point to `first`, metres.
     fn length_along(&self, ray: &Vec3, first: &Vertex) -> f64 {
         larger(
             (first.w - self.interior).dot(ray),
@@ -288,7 +304,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         )
     }
 
-    /// Evaluates unit `dir`, within the limits.
+    /// Evaluates unit `dir` and counts an iteration, unless a limit is reached.
     fn evaluate(&mut self, dir: &Vec3) -> Result<SupportSample, WalkEnd> {
         self.check_limits()?;
         self.iterations += 1;
@@ -305,7 +321,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         Ok(())
     }
 
-    /// Moves the portal of the ray outwards until there is a next step. The portal's last face.
+    /// Refines the portal of the ray until there is a next step. Returns the step and the last portal.
+    ///
+    /// One loop over one portal: the tests share its face, and each ends the loop or evaluates a direction.
     fn refine(
         &mut self,
         ray: &Vec3,
@@ -318,7 +336,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let height_eps = self.query.scale.height_eps();
             let mut w = self.set.farthest_vertex(&face.normal);
             let height = face.normal.dot(&w.w) - face.offset;
-            // A corner is above by rounding: a face that took it again would end at the cap of steps.
+            // A corner is above its own face only by rounding; taken again, it would repeat until MAX_STEPS.
             let is_corner = portal.iter().any(|v| v.pair == w.pair);
             if is_corner || !(height > KNOWN_LEVEL * tolerance + height_eps) {
                 let is_inside = face.offset > 0.0 && face.has_foot(4.0 * height_eps);
@@ -332,18 +350,18 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     self.predict(&face)
                 };
                 if let Some(p) = prediction.take_if(|p| !self.has_gain(p, tolerance)) {
-                    if self.is_met(&p, tolerance) {
+                    if self.is_upper_bound(&p, tolerance) {
                         return Ok((WalkStep::Fit(p.model), face));
                     }
-                    // The least support value is not in the predicted direction, but as far.
-                    prediction = Some(p).filter(|p| self.is_level(p.value, tolerance));
+                    // Equal to the upper bound, but in another direction: evaluated too.
+                    prediction = Some(p).filter(|p| self.equals_upper_bound(p.value, tolerance));
                 }
-                // The next ray, in the same valley.
-                let is_beside = !is_inside
+                // The normal is a new ray in the same valley.
+                let is_same_valley = !is_inside
                     && face.offset > 0.0
                     && face.normal.dot(&self.query.upper.dir) > SAME_VALLEY_COS
                     && face.normal.dot(ray) < 1.0 - 1e-14;
-                if is_beside && prediction.is_none() && !along_normal {
+                if is_same_valley && prediction.is_none() && !along_normal {
                     return Ok((WalkStep::Ray(face.normal), face));
                 }
                 let dir = prediction.as_ref().map_or(face.normal, |p| p.dir);
@@ -351,7 +369,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let sample = self.evaluate(&dir)?;
                 if let Some(step) = prediction
                     .as_ref()
-                    .and_then(|p| self.judge(p, sample.h, before, tolerance))
+                    .and_then(|p| self.step_on_prediction(p, sample.h, before, tolerance))
                 {
                     return Ok((step, face));
                 }
@@ -362,7 +380,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                         continue;
                     }
                     let step = if is_inside {
-                        // As the callbacks saw it.
+                        // Rounded to the callers' scalar, as it was evaluated.
                         let dir = self.set.dir(sample.pair.a.into());
                         let depth = sample.h;
                         WalkStep::Face { dir, depth }
@@ -379,18 +397,18 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         Err(WalkEnd::Status(Status::Rounding))
     }
 
-    /// Returns the next step from a face above which no known difference lies, if none needs a query.
+    /// Returns the next step from a face with no known difference above it, if it can be taken without a callback.
     fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<WalkStep> {
         let UpperBound { depth, dir, .. } = self.query.upper;
         let cosine = face.normal.dot(&dir);
         let angle2 = 2.0 * (1.0 - cosine);
-        // The rest is left for the witness points.
-        let is_level = (face.offset - depth).abs() <= 0.8 * tolerance;
-        if is_inside && is_level {
-            let cone = 2.0 * face.inset() / face.offset;
-            // So far beside the foot the witness points still meet.
-            let allowed2 = if cone < TILT_RAD {
-                lesser(0.04 * TILT_RAD * TILT_RAD, tolerance / depth)
+        // A fifth of the tolerance is reserved for the error of the witness points.
+        let is_equal = (face.offset - depth).abs() <= 0.8 * tolerance;
+        if is_inside && is_equal {
+            let cone = 2.0 * face.foot_depth() / face.offset;
+            // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
+            let allowed2 = if cone < NARROW_FACE_RAD {
+                lesser(0.04 * NARROW_FACE_RAD * NARROW_FACE_RAD, tolerance / depth)
             } else {
                 0.25 * cone * cone
             };
@@ -398,19 +416,19 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 return Some(WalkStep::Face { dir, depth });
             }
         }
-        // This valley is higher.
+        // The upper bound is in a lower valley.
         if face.offset > depth + tolerance && angle2 > 1e-12 {
             return Some(WalkStep::Ray(dir));
         }
         None
     }
 
-    /// Returns the minimum that the sphere fits predict, else Newton's direction of a smooth D, in a direction that
-    /// was not queried yet, or is that of the least support value. (Measured: the longest walks of balls and capsules
-    /// take twice as many support points where directions are queried again.)
+    /// Returns the minimum that the sphere fits predict, else the one that Newton's step predicts. Its direction was not
+    /// evaluated yet, or is that of the upper bound. (Measured: if directions may be evaluated again, the longest walks
+    /// of balls and capsules take twice as many support points.)
     fn predict(&self, face: &Face) -> Option<Prediction> {
         let found = self.fit.predict(self.set, &face.corners, &face.normal);
-        // Balls about one center: any direction.
+        // Any direction is a minimum of concentric balls.
         let sum = self.fit.sum();
         let is_concentric = self.is_centered && self.interior.norm() <= MIN_CORE_DISTANCE_REL * sum;
         let found = found.or_else(|| is_concentric.then_some((face.normal, sum)));
@@ -420,7 +438,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             value,
         });
         let smooth = || {
-            let is_used = self.newton_misses < MAX_FAILED_PREDICTIONS;
+            let is_used = self.newton_failures < MAX_FAILED_PREDICTIONS;
             let step = is_used.then(|| newton_step(self.set, &self.query.upper))??;
             Some(Prediction {
                 model: Model::Smooth(step.flattest),
@@ -429,50 +447,51 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             })
         };
         sphere
-            .filter(|p| self.sphere_misses < MAX_FAILED_PREDICTIONS && self.is_new(&p.dir))
+            .filter(|p| self.sphere_failures < MAX_FAILED_PREDICTIONS && self.is_new(&p.dir))
             .or_else(|| smooth().filter(|p| self.is_new(&p.dir)))
     }
 
-    /// Returns whether unit `dir` was not queried yet, or is the direction of the least support value.
+    /// Returns whether unit `dir` was not evaluated yet, or is the direction of the upper bound.
     fn is_new(&self, dir: &Vec3) -> bool {
         let is_same = |n: &Vec3| n.dot(dir) > 1.0 - SAME_DIR_EPS;
         is_same(&self.query.upper.dir) || !(0..self.set.len()).any(|k| is_same(&self.set.dir(k)))
     }
 
-    /// Returns whether a prediction is lower than the least support value by enough for a query.
+    /// Returns whether a prediction would lower the upper bound by enough for an evaluation.
     fn has_gain(&self, prediction: &Prediction, tolerance: f64) -> bool {
         prediction.value < self.query.upper.depth - MIN_GAIN * tolerance
     }
 
-    /// Returns whether the least support value is `value`, metres, within half of the tolerance.
-    fn is_level(&self, value: f64, tolerance: f64) -> bool {
+    /// Returns whether the upper bound is `value`, metres, within half of the tolerance.
+    fn equals_upper_bound(&self, value: f64, tolerance: f64) -> bool {
         (value - self.query.upper.depth).abs() <= 0.5 * tolerance
     }
 
-    /// Returns whether the least support value is the predicted one, and the witness points of the model meet along
-    /// its direction.
-    fn is_met(&self, prediction: &Prediction, tolerance: f64) -> bool {
+    /// Returns whether a prediction is the upper bound, and the model's witness points coincide after obj2 is moved by
+    /// the upper bound.
+    fn is_upper_bound(&self, prediction: &Prediction, tolerance: f64) -> bool {
         let UpperBound { depth, dir, .. } = self.query.upper;
         let turn2 = (prediction.dir - dir).norm_squared();
-        let is_met = match prediction.model {
+        let is_coincident = match prediction.model {
             Model::Sphere => {
                 let off = (self.fit.sum() - depth).powi(2);
                 turn2 * self.fit.sum() <= 0.5 * tolerance && turn2 * off <= depth * tolerance
             }
-            Model::Smooth(_) => self.has_meeting_vertices(tolerance),
+            Model::Smooth(_) => self.vertices_coincide(tolerance),
         };
-        is_met && self.is_level(prediction.value, tolerance)
+        is_coincident && self.equals_upper_bound(prediction.value, tolerance)
     }
 
-    /// Returns whether the vertices of the least support value meet when one is moved along its direction.
-    fn has_meeting_vertices(&self, tolerance: f64) -> bool {
+    /// Returns whether the two vertices of the upper bound coincide after obj2 is moved by it.
+    fn vertices_coincide(&self, tolerance: f64) -> bool {
         let UpperBound { depth, dir, index } = self.query.upper;
         let w = self.set.difference(VertexSet::<N>::pair_of_entry(index));
         (w - dir * depth).norm_squared() <= depth * tolerance
     }
 
-    /// Judges a prediction by the support value `h` that it met. The next step where it came true.
-    fn judge(
+    /// Compares a prediction with the evaluated support value `h`, and counts it if it failed. Returns the next step if
+    /// they agree. `before`: the upper bound before the evaluation, metres.
+    fn step_on_prediction(
         &mut self,
         prediction: &Prediction,
         h: f64,
@@ -485,18 +504,18 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             KNOWN_LEVEL * tolerance,
         );
         let is_true = h < value + slack;
-        let has_meeting = match prediction.model {
+        let is_coincident = match prediction.model {
             Model::Sphere => true,
-            Model::Smooth(_) => self.has_meeting_vertices(tolerance),
+            Model::Smooth(_) => self.vertices_coincide(tolerance),
         };
         if !is_true {
             match prediction.model {
-                Model::Sphere => self.sphere_misses += 1,
-                Model::Smooth(_) => self.newton_misses += 1,
+                Model::Sphere => self.sphere_failures += 1,
+                Model::Smooth(_) => self.newton_failures += 1,
             }
             return None;
         }
-        let is_minimum = (h - value).abs() <= 0.5 * tolerance && has_meeting;
+        let is_minimum = (h - value).abs() <= 0.5 * tolerance && is_coincident;
         Some(if is_minimum {
             WalkStep::Fit(prediction.model)
         } else {
@@ -504,20 +523,20 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         })
     }
 
-    /// Returns whether a stationary direction is a minimum: no direction beside it is lower.
+    /// Returns whether a candidate is a minimum: no direction tilted from it is lower. May evaluate such directions.
     fn confirm(&mut self, step: &WalkStep, face: &Face, tolerance: f64) -> Result<bool, WalkEnd> {
         let upper = self.query.upper.dir;
         match step {
             WalkStep::Ray(_) => Ok(false),
             WalkStep::Face { dir, depth } => {
-                // A lower support value is known: the walk goes on from there.
+                // The upper bound is lower: the walk continues from there.
                 if *depth > self.query.upper.depth + KNOWN_LEVEL * tolerance {
                     return Ok(false);
                 }
-                let is_narrow = 2.0 * (face.inset() / face.offset).atan() < TILT_RAD;
-                let across = face.across();
+                let is_narrow = 2.0 * (face.foot_depth() / face.offset).atan() < NARROW_FACE_RAD;
+                let axis = face.perpendicular_to_longest_edge();
                 Ok(!is_narrow
-                    || self.test_tilted_directions(step, dir, &[across, -across], tolerance)?)
+                    || self.test_tilted_directions(step, dir, &[axis, -axis], tolerance)?)
             }
             WalkStep::Fit(Model::Smooth(flattest)) => {
                 self.test_tilted_directions(step, &upper, &[*flattest, -flattest], tolerance)
@@ -531,32 +550,32 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 }
                 let center_tolerance = self.center_tolerance(tolerance);
                 let upper = &self.query.upper;
-                let is_real = (self.fit).are_spheres_confirmed(
+                let is_confirmed = (self.fit).are_spheres_confirmed(
                     self.set,
                     &face.corners,
                     upper,
                     center_tolerance,
                 );
-                if !is_real {
-                    self.sphere_misses = MAX_FAILED_PREDICTIONS;
+                if !is_confirmed {
+                    self.sphere_failures = MAX_FAILED_PREDICTIONS;
                 }
-                Ok(is_real)
+                Ok(is_confirmed)
             }
         }
     }
 
-    /// Returns how far apart two centers of one sphere may be found, metres.
+    /// Returns the largest distance of two estimates of a sphere's center, metres.
     fn center_tolerance(&self, tolerance: f64) -> f64 {
         tolerance + self.query.scale.height_eps()
     }
 
-    /// Queries beside unit `n`, tilted towards each of the unit vectors `ways` across it, unless a direction
-    /// near there was queried. Returns whether none is lower, and all fit what the step assumes.
+    /// Evaluates unit `n` tilted towards each of the unit vectors `directions`, which are perpendicular to it, unless a
+    /// direction near the tilted one was evaluated. Returns whether none has a lower support value.
     fn test_tilted_directions(
         &mut self,
         step: &WalkStep,
         n: &Vec3,
-        ways: &[Vec3],
+        directions: &[Vec3],
         tolerance: f64,
     ) -> Result<bool, WalkEnd> {
         let (before, before_len) = (self.query.upper.depth, self.set.len());
@@ -564,11 +583,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let narrow = 2.5 * TILT_RAD;
         let is_sphere = matches!(step, WalkStep::Fit(Model::Sphere));
         let far = if is_sphere { 0.6 } else { narrow };
-        for way in ways {
+        for direction in directions {
             let is_near = |walk: &Self, k: usize| {
                 let dir = walk.set.dir(k);
-                let across = dir - n * dir.dot(n);
-                let sine = across.norm();
+                let perpendicular = dir - n * dir.dot(n);
+                let sine = perpendicular.norm();
                 let (far, cosine) = if k < before_len {
                     (far, 0.6)
                 } else {
@@ -577,7 +596,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 sine > 0.4 * TILT_RAD
                     && sine < far
                     && dir.dot(n) > 0.0
-                    && across.dot(way) > cosine * sine
+                    && perpendicular.dot(direction) > cosine * sine
                     && (!is_sphere
                         || k >= before_len
                         || walk.fit.is_confirmed_twice(
@@ -589,7 +608,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             if (0..self.set.len()).any(|k| is_near(self, k)) {
                 continue;
             }
-            let tilted = n + way * TILT_RAD;
+            let tilted = n + direction * TILT_RAD;
             let sample = self.evaluate(&(tilted / tilted.norm()))?;
             if sample.h < before - KNOWN_LEVEL * tolerance {
                 return Ok(false);
@@ -598,9 +617,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         Ok(true)
     }
 
-    /// Returns a confirmed minimum with its witness points, after the overlap is proven.
+    /// Proves the overlap. Returns the confirmed minimum with its witness points.
     fn compute_result(&mut self, step: &WalkStep, face: &Face) -> Result<Minimum, WalkEnd> {
-        let mut minimum = self.lowest();
+        let mut minimum = self.upper_bound();
         match step {
             WalkStep::Face { dir, depth } => {
                 (minimum.dir, minimum.depth) = (*dir, *depth);
@@ -624,8 +643,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         Ok(minimum)
     }
 
-    /// Returns the least support value, whose witness points are its vertices.
-    fn lowest(&self) -> Minimum {
+    /// Returns the upper bound, with the vertices of its support point for witness points.
+    fn upper_bound(&self) -> Minimum {
         let UpperBound { depth, dir, index } = self.query.upper;
         let point = self.set.point(VertexSet::<N>::pair_of_entry(index));
         Minimum {
@@ -635,7 +654,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
     }
 
-    /// Proves that the origin is in D: in the tetrahedron of the interior point and the face, else by GJK on the known vertices.
+    /// Proves that the origin is in D: by the tetrahedron of interior point and face if it contains the origin, else by
+    /// GJK, which evaluates directions if the known vertices are not enough.
     fn prove_overlap(&mut self, face: &Face) -> Result<(), WalkEnd> {
         let is_trusted = self.query.interior.is_some();
         if self.is_centered && !is_trusted {
@@ -675,7 +695,7 @@ mod tests {
 
     type Walked = Result<(Penetration, Status), Stop>;
 
-    /// Returns a ball about `at` and a tip above it.
+    /// Returns the hull of a ball about `at` and the point `at` + `tip`.
     fn drop(radius: f64, tip: Vec3, at: Vec3) -> impl Fn(&Vec3) -> Vec3 {
         move |n: &Vec3| {
             at + if n.dot(&tip) > radius {
@@ -686,7 +706,7 @@ mod tests {
         }
     }
 
-    /// Returns the answer and the number of support points.
+    /// Returns the result and the number of support points.
     fn walk<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         center: Option<Vec3>,
@@ -705,8 +725,8 @@ mod tests {
         (found, md.supports() - before)
     }
 
-    /// Asserts that no direction beside the answer is lower, and that the witness points meet and lie in their
-    /// bodies.
+    /// Asserts that no direction near that of the result is lower, and that the witness points are in their bodies and
+    /// coincide after obj2 is moved by the depth.
     fn check<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         hit: &Penetration,
@@ -737,7 +757,7 @@ mod tests {
         }
     }
 
-    /// Walks from many starts, with and without centers, and checks each answer.
+    /// Walks from many starts, with and without centers, and checks each result.
     fn check_walks<A: SupportMap, B: SupportMap>(
         r: &mut Random,
         mut pair: impl FnMut(&mut Random, Vec3) -> (A, B),
@@ -810,7 +830,7 @@ mod tests {
         });
     }
 
-    /// The exact depth, whatever the tolerance, with and without centers.
+    /// The depth is within the tolerance, with and without centers, and takes at most 15 support points.
     #[test]
     fn nearly_touching_spheres_take_few_support_points() {
         let mut r = Random::new(24);
@@ -835,8 +855,8 @@ mod tests {
         }
     }
 
-    /// The faces y = 1 and one tilted by 30 degrees meet at x = 0: along y the foot is on their edge, and the
-    /// support value falls to 0.87 on the way to the other normal.
+    /// The face y = 1 and one tilted by 30 degrees share an edge at x = 0: along y the foot is on the edge, and the
+    /// support value decreases to 0.87 towards the normal of the other face.
     #[test]
     fn a_stationary_edge_is_no_minimum() {
         let wall = |x: f64, y: f64| [Vec3::new(x, y, -2.0), Vec3::new(x, y, 2.0)];
@@ -859,7 +879,7 @@ mod tests {
         }
     }
 
-    /// The tip of a drop, less the radius of its ball, looks like the center of another ball.
+    /// The tip of a drop satisfies the sphere fit in one direction.
     #[test]
     fn the_tip_of_a_drop_is_no_minimum() {
         let mut r = Random::new(25);
@@ -876,8 +896,8 @@ mod tests {
         }
     }
 
-    /// Two drops, nearly concentric: the minimum is often where the ball of one and the tip of the other tie, and
-    /// no sphere of the two that a fit has found.
+    /// Two drops, nearly concentric: at the minimum, ball and tip often have equal support values, and D is none of the
+    /// spheres that a fit has found.
     #[test]
     fn drops_whose_balls_coincide_have_sound_witness_points() {
         let mut r = Random::new(29);
@@ -900,7 +920,7 @@ mod tests {
         assert!(converged > 500, "{converged}");
     }
 
-    /// The foot is in the known face of two drops' tips and balls, and a lower support value is known beside it.
+    /// The foot is in a face of the inner model of two drops, and a nearby direction has a lower support value.
     #[test]
     fn a_face_above_the_least_support_value_is_no_minimum() {
         let axes = [
@@ -943,10 +963,10 @@ mod tests {
         assert!(converged > 5, "{converged}");
     }
 
-    /// A plate that a ball has passed through: from the old side there is a local minimum of the support function,
-    /// and no overlap.
+    /// A ball that has passed through a plate: along the normal of the side where it was there is a local minimum of the
+    /// support function, but no overlap.
     #[test]
-    fn a_minimum_of_objects_apart_is_a_miss() {
+    fn a_minimum_of_separated_objects_is_a_miss() {
         let plate = corners(Vec3::new(1.0, 1.0, 0.01));
         for z in [0.12, 0.2, 0.5] {
             let at = Vec3::new(0.1, 0.05, z);

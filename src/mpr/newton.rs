@@ -6,12 +6,14 @@
 //! Reference: J. Nocedal, S. Wright, "Numerical Optimization", chapters 3 and 6 (a Newton step whose Hessian is
 //! fitted to gradients).
 //!
-//! 1. *Gradient*: the support point of the least support value, less its part along the direction.
-//! 2. *Hessian*: from the two known support points nearest to it in direction that lie beyond each other's planes
-//!    alike, as those of a smooth D do.
-//! 3. *Step*: none where the Hessian has no minimum, or the step is longer than [`MAX_NEWTON_TAN`].
+//! 1. *Gradient*: the support point of the upper bound, less its component along the direction.
+//! 2. *Hessian*: from the two known support points with the closest directions for which D is smooth in between: the
+//!    distances e and f ([`round_fit`](crate::minkowski::round_fit)) of each of the two points below the support
+//!    plane of the other agree within [`SMOOTH_REL_TOL`].
+//! 3. *Step*: to the minimum of the quadratic model; none if it has no minimum, or if the tangent of the step's angle
+//!    is larger than [`MAX_NEWTON_TAN`].
 //!
-//! Validity. The step tells where to query next; it proves nothing.
+//! Outputs. The step is a direction to evaluate; it proves nothing.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -20,27 +22,27 @@ use crate::minkowski::query::UpperBound;
 use crate::minkowski::round_fit::MIN_ANGLE2;
 use crate::minkowski::vertex_set::VertexSet;
 
-/// The largest tangent of the angle between the entry of the least support value and those that tell its
-/// curvature, and of Newton's step.
+/// The largest tangent of the angle of Newton's step, and of the angle between the directions of the upper bound and
+/// of the entries from which the Hessian is computed.
 const MAX_NEWTON_TAN: f64 = 0.4;
-/// The share by which e and f of two entries may differ for a smooth D.
+/// The largest relative difference of e and f at which D counts as smooth between two entries.
 const SMOOTH_REL_TOL: f64 = 0.1;
 
 /// The minimum of the support function that Newton's step predicts.
 pub struct NewtonStep {
     /// Unit.
     pub dir: Vec3,
-    /// The support value, metres.
+    /// The predicted support value, metres.
     pub value: f64,
-    /// The unit vector across the direction of the least support value along which D is the flattest.
+    /// The unit vector perpendicular to the direction of the upper bound along which D is the flattest.
     pub flattest: Vec3,
 }
 
-/// Returns the minimum that Newton's direction from the entry of the least support value predicts; `None` where no
-/// two entries near there tell the curvature, or the support function has no minimum near there.
+/// Returns the minimum that Newton's step from the entry of the upper bound predicts; `None` if the curvature there
+/// is unknown, or if the support function has no minimum near there.
 ///
-/// In the plane of directions n + x the support function is h + g x + x R x / 2, g the part of the support point
-/// across n and R its derivative; divided by the length of n + x it has the gradient g + (R − h) x.
+/// For directions n + x, x perpendicular to n, the support function is h + g x + x R x / 2: g is the component of the
+/// support point perpendicular to n, and R is its derivative. Divided by |n + x| it has the gradient g + (R − h) x.
 pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<NewtonStep> {
     let n = upper.dir;
     let at = set.difference(VertexSet::<N>::pair_of_entry(upper.index));
@@ -48,15 +50,20 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
     let tangent = |v: &Vec3| Vector2::new(v.dot(&e1), v.dot(&e2));
-    let turn = |k: usize| tangent(&set.dir(k)) / set.dir(k).dot(&n);
-    let moved = |k: usize| tangent(&(set.difference(VertexSet::<N>::pair_of_entry(k)) - at));
-    let x1 = turn(first);
+    let dir_change = |k: usize| tangent(&set.dir(k)) / set.dir(k).dot(&n);
+    let vertex_change =
+        |k: usize| tangent(&(set.difference(VertexSet::<N>::pair_of_entry(k)) - at));
+    let x1 = dir_change(first);
     // Not on a line with the first.
     let second = closest_entry(set, upper, |k| {
-        let x = turn(k);
+        let x = dir_change(k);
         x1.perp(&x).powi(2) > 0.1 * x.norm_squared() * x1.norm_squared()
     })?;
-    let (x2, y1, y2) = (turn(second), moved(first), moved(second));
+    let (x2, y1, y2) = (
+        dir_change(second),
+        vertex_change(first),
+        vertex_change(second),
+    );
     let slope =
         Matrix2::from_columns(&[y1, y2]) * Matrix2::from_columns(&[x1, x2]).try_inverse()?;
     let curvature = (slope + slope.transpose()) * 0.5;
@@ -83,8 +90,8 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
     })
 }
 
-/// Returns the entry nearest in direction to that of the least support value, of those that are accepted, not the
-/// same direction, and on the same smooth part of D.
+/// Returns the entry with the direction closest to that of the upper bound, among the accepted entries that have
+/// another direction and are on the same smooth part of D.
 fn closest_entry<const N: usize>(
     set: &VertexSet<N>,
     upper: &UpperBound,
@@ -101,8 +108,8 @@ fn closest_entry<const N: usize>(
     best.0
 }
 
-/// Returns whether two entries lie beyond each other's planes alike, as those of a smooth D do: by e and f, up to
-/// [`SMOOTH_REL_TOL`].
+/// Returns whether D counts as smooth between two entries: e + f is positive, and e and f differ by at most
+/// [`SMOOTH_REL_TOL`] of it.
 fn is_smooth_between<const N: usize>(set: &VertexSet<N>, i: usize, k: usize) -> bool {
     let d = set.difference(VertexSet::<N>::pair_of_entry(k))
         - set.difference(VertexSet::<N>::pair_of_entry(i));
@@ -115,7 +122,7 @@ fn is_smooth_between<const N: usize>(set: &VertexSet<N>, i: usize, k: usize) -> 
 fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
     let (a, b, c) = (m.m11, m.m12, m.m22);
     let least = 0.5 * (a + c) - (0.5 * (a - c)).hypot(b);
-    // Both are eigenvectors; the longer one has digits.
+    // Both are eigenvectors; the longer one is more exact.
     let (p, q) = (Vector2::new(b, least - a), Vector2::new(least - c, b));
     let longer = if p.norm_squared() > q.norm_squared() {
         p

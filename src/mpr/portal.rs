@@ -4,24 +4,24 @@
 //! Portal discovery and refinement on known vertices (G. Snethen, "XenoCollide", Game Programming
 //! Gems 7; W. Gao, "Efficient Incremental Penetration Depth Estimation", Algorithm 1).
 //!
-//! The origin ray runs from an interior point of D through the origin; its line holds the origin. A
-//! *portal* is a triangle of points of D that the ray passes through.
+//! The origin ray runs from an interior point of D through the origin. A *portal* is a triangle of points of D that
+//! the ray crosses.
 //!
-//! 1. *Discovery*: A is the known difference farthest along the ray, B the one farthest across, towards
-//!    the ray. Then the point farthest across the line AB towards the ray replaces A or B, or closes the
-//!    portal.
+//! 1. *Discovery*: v1 is the known difference farthest along the ray. v2 is the point farthest along the
+//!    perpendicular from v1 to the ray. Then the point farthest along the normal of the plane of ray direction and
+//!    edge v1 v2, on the side of the ray, replaces v1 or v2, or completes the portal as v3.
 //! 2. *Refinement*: the point farthest along the portal's normal replaces one corner, so that the ray
-//!    still passes through. It ends where the bounds meet, or where nothing is above the portal.
+//!    crosses the new portal. It ends if the bounds meet, or if no point is above the portal.
 //!
-//! Departures. Both steps take a known difference where one does, and query the callbacks where none is
-//! far enough. XenoCollide's first portal is a quarter turn wide; here the direction of the least support
-//! value is tilted across, no wider than the depth and the distance from the ray allow: shallow contacts
-//! end with a small portal next to the minimum. A vertex on the ray itself starts from a ring of three
-//! tilted directions.
+//! Departures. Both steps take a known difference if one is far enough, and evaluate the callbacks otherwise.
+//! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
+//! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
+//! so that the portal of a shallow contact is small and close to the minimum. If v1 is on the ray itself, the portal
+//! is a *ring*: the support points of three directions around the ray.
 //!
-//! Outputs: `Ok(None)` of [`discover`]: D is flat or the vertices tie; use the initial simplex of the
-//! polytope. [`refine`] leaves a valid portal in place, whatever ended it. `Stop::Separated`: a queried
-//! direction is a separating axis; that is the separation test.
+//! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
+//! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
+//! direction is a separating axis; this is the separation test.
 
 use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
@@ -30,38 +30,40 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 
-/// The tilt of a query in discovery, in units of the upper bound over the distance from the ray, the angle at which
-/// a plane of that depth passes through the ray; and its growth where it found nothing on the other side of the
-/// ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more support points of intersection tests.
+/// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
+/// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
+/// support points in intersection tests.
 const TILT_GROWTH: f64 = 1.4;
-/// The widest such tilt: the width of the portal over the length of the ray in D, the width being this
-/// times the distance from the ray. Measured: 4 takes 1 % fewer support points for the global minimum, and
-/// 13 % more for a local one of hulls, whose portals then reach into other valleys.
+/// The largest tilt is the larger of this times the distance from the ray, and [`TILT_WIDTH_EDGE`] times the length
+/// of v1 v2, over the length of the ray in D. Measured: 4 takes 1 % fewer support points for the global minimum, and
+/// 13 % more for a local one of hulls, whose portals then extend into other valleys.
 const TILT_WIDTH_OFF: f64 = 2.75;
-/// … or this times the length of AB.
+/// The factor of the length of v1 v2 in the largest tilt, see [`TILT_WIDTH_OFF`].
 const TILT_WIDTH_EDGE: f64 = 0.75;
-/// The number of tilts that find nothing before the query is a quarter turn aside.
+/// The number of tilts that find no point on the other side of the ray before the perpendicular direction is
+/// evaluated.
 const MAX_TILTS: u32 = 3;
-/// The steps of a portal, of a walk from portal to portal or of a simplex, at most. Each comes closer to the surface
-/// of D, few take forty, and what is open after so many is rounding. Insensitive: 24 to 100.
+/// The iteration limit of portal discovery and refinement, of the local search and of GJK. Each step comes closer to
+/// the surface of D, and few loops take forty; later steps only change rounding errors. Insensitive: 24 to 100.
 pub const MAX_STEPS: u32 = 100;
-/// The share of the gap that a known difference must lie above a plane to replace a query.
+/// The height above a plane, in gaps, from which a known difference replaces a support call.
 pub const KNOWN_LEVEL: f64 = 0.2;
-/// The upper bound, as a share of the size, up to which a contact is shallow: a portal near the minimum pays there, and
-/// the polytope is faster beyond for round objects (5 %). Without it a proof of `campaign` ("scale 1e-6 to 1e6") misses
-/// the minimum.
+/// The upper bound, in sizes, up to which a contact is shallow. The portal of a shallow contact is refined after the
+/// origin is on its inner side, because it is near the minimum; for deeper contacts of round objects the polytope is
+/// faster (5 %). Measured: without this limit a proof of category SCALED of c-tests/tests/stability/categories.h fails
+/// its test.
 const SHALLOW_REL: f64 = 0.3;
 
-/// Returns whether the least support value is that of a shallow contact.
+/// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
 fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
     let upper = query.upper.depth;
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
 
-/// Finds a portal of the ray along unit `ray` through the origin. `length`: of the ray in D, about,
-/// metres. `gap`: what the bounds may be apart, metres. The corners wind around the ray so that their
-/// normal looks along it. A full set ends the discovery: `None`.
+/// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
+/// metres. `gap`: the allowed difference of the bounds, metres. `ring_tilt`: tangent of the tilt of [`ring`]. The
+/// corners are in the order in which the portal's normal points along the ray. A full set ends the discovery: `None`.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -74,87 +76,89 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     gap: f64,
     ring_tilt: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
-    let mut a = set.farthest_vertex(ray);
-    let mut b: Option<Vertex> = None;
-    // Across the ray, from A towards it.
-    let mut across = ray * a.w.dot(ray) - a.w;
-    let mut height = across.dot(&a.w);
+    let mut v1 = set.farthest_vertex(ray);
+    let mut v2: Option<Vertex> = None;
+    // Perpendicular to the ray, from v1 or from the edge v1 v2 towards it.
+    let mut perpendicular = ray * v1.w.dot(ray) - v1.w;
+    let mut height = perpendicular.dot(&v1.w);
     if !(-height > 0.5 * gap * length) {
         match ring(query, set, ray, ring_tilt)? {
             Ok(portal) => return Ok(Some(portal)),
-            Err(axis) => (across, height) = (axis, 0.0),
+            Err(axis) => (perpendicular, height) = (axis, 0.0),
         }
     }
     let tiny = 1e-12 * query.scale.size2();
     let mut side = 1.0;
     let mut failures = 0;
     for _ in 0..MAX_STEPS {
-        // Closer to the ray than A and B are.
-        let is_closer = |w: &Vec3| across.dot(w) > 0.999 * height + tiny;
-        let mut p = set.farthest_vertex(&across);
-        if !is_closer(&p.w) {
+        // Closer to the ray than v1 and v2.
+        let is_closer = |w: &Vec3| perpendicular.dot(w) > 0.999 * height + tiny;
+        let mut next = set.farthest_vertex(&perpendicular);
+        if !is_closer(&next.w) {
             if set.is_full() {
                 return Ok(None);
             }
-            let edge = b.map_or(0.0, |b| (b.w - a.w).norm());
-            let n = discovery_dir(&query.upper, &across, height, edge, length, failures);
+            let edge = v2.map_or(0.0, |v2| (v2.w - v1.w).norm());
+            let n = discovery_dir(&query.upper, &perpendicular, height, edge, length, failures);
             let Some(n) = normalise_unscaled(&n) else {
                 return Ok(None);
             };
             let sample = query.evaluate(set, &n)?;
-            let ahead = across.dot(&sample.w);
-            if !(ahead > 0.0) {
+            let sample_height = perpendicular.dot(&sample.w);
+            if !(sample_height > 0.0) {
                 if failures >= MAX_TILTS {
                     return Ok(None);
                 }
                 failures += 1;
             }
-            if ahead > across.dot(&p.w) {
-                p = sample.vertex();
+            if sample_height > perpendicular.dot(&next.w) {
+                next = sample.vertex();
             }
-            if !is_closer(&p.w) {
+            if !is_closer(&next.w) {
                 continue;
             }
         }
-        let b = match &mut b {
-            None => b.insert(p),
-            Some(b) => {
-                if side * ray.dot(&b.w.cross(&p.w)) < 0.0 {
-                    a = p;
-                } else if side * ray.dot(&p.w.cross(&a.w)) < 0.0 {
-                    *b = p;
+        let v2 = match &mut v2 {
+            None => v2.insert(next),
+            Some(v2) => {
+                if side * ray.dot(&v2.w.cross(&next.w)) < 0.0 {
+                    v1 = next;
+                } else if side * ray.dot(&next.w.cross(&v1.w)) < 0.0 {
+                    *v2 = next;
                 } else {
-                    let is_beyond = across.dot(&p.w) > 0.0;
-                    let portal = if side > 0.0 { [a, *b, p] } else { [*b, a, p] };
-                    return Ok(is_beyond.then_some(portal));
+                    let is_beyond = perpendicular.dot(&next.w) > 0.0;
+                    let [first, second] = if side > 0.0 { [v1, *v2] } else { [*v2, v1] };
+                    return Ok(is_beyond.then_some([first, second, next]));
                 }
-                b
+                v2
             }
         };
-        across = ray.cross(&(b.w - a.w));
-        height = across.dot(&a.w);
+        perpendicular = ray.cross(&(v2.w - v1.w));
+        height = perpendicular.dot(&v1.w);
         side = 1.0;
         if height > 0.0 {
-            (across, height, side) = (-across, -height, -1.0);
+            (perpendicular, height, side) = (-perpendicular, -height, -1.0);
         }
     }
     Ok(None)
 }
 
-/// Returns the next direction of the discovery, of any length: the one of the least support value, tilted towards
-/// `across`; or `across` itself after [`MAX_TILTS`] failures. `height`: of the corners along `across`, m². `edge`:
-/// the distance of the two corners, 0 for one, and `length`: of the ray in D, about, metres.
+/// Returns the next direction of the discovery, of any length: that of the upper bound, tilted towards
+/// `perpendicular`; or `perpendicular` itself after [`MAX_TILTS`] failures. `height`: dot product of the corners with
+/// `perpendicular`, m². `edge`: distance of the two corners, 0 for one corner, metres. `length`: approximate length of
+/// the ray in D, metres.
 #[inline(always)]
 fn discovery_dir(
     upper: &UpperBound,
-    across: &Vec3,
+    perpendicular: &Vec3,
     height: f64,
     edge: f64,
     length: f64,
     failures: u32,
 ) -> Vec3 {
-    let width = across.norm();
-    let off = -height / width;
+    let norm = perpendicular.norm();
+    // The distance of the corners from the ray.
+    let off = -height / norm;
     let mut tilt = f64::INFINITY;
     if failures < MAX_TILTS {
         let widest = (TILT_WIDTH_OFF * off).max(TILT_WIDTH_EDGE * edge) / length;
@@ -164,14 +168,15 @@ fn discovery_dir(
         }
     }
     if tilt > 0.0 && tilt < f64::INFINITY {
-        upper.dir + across * (tilt / width)
+        upper.dir + perpendicular * (tilt / norm)
     } else {
-        *across
+        *perpendicular
     }
 }
 
-/// Queries three directions around a ray that passes through its own support vertex, tilted by the tangent `tilt`. The
-/// inner error is an axis across the ray, where the three points are nearly on a line.
+/// Evaluates three directions around a ray that passes through its own support point, tilted by the tangent `tilt`.
+/// Returns their points as a portal. The inner `Err` is an axis perpendicular to the ray, for a discovery along it: the
+/// set is full, or the three points are nearly on a line.
 #[cold]
 #[inline(never)]
 fn ring<A: SupportMap, B: SupportMap, const N: usize>(
@@ -183,7 +188,7 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
-    // At most 45 degrees; also for NaN.
+    // At most 45 degrees, also for NaN.
     let tilt = lesser(tilt, 1.0);
     let turns = [[-0.5, half], [-0.5, -half], [1.0, 0.0]];
     let mut corners = [Vertex::default(); 3];
@@ -200,36 +205,35 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(if is_wide { Ok(corners) } else { Err(e1) })
 }
 
-/// Replaces one corner by `w`, a point beyond the portal, so that the ray still passes through.
+/// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
 #[inline(always)]
 pub fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
-    // On which side of the plane through the ray and w each corner lies.
-    let across = ray.cross(&w.w);
-    let [a, b, c] = portal.each_ref().map(|v| across.dot(&v.w) > 0.0);
+    // The side of the plane through the ray and w on which each corner lies.
+    let normal = ray.cross(&w.w);
+    let [side0, side1, side2] = portal.each_ref().map(|v| normal.dot(&v.w) > 0.0);
     // Constant indices keep the corners in registers.
-    if a && !b {
+    if side0 && !side1 {
         portal[2] = w;
-    } else if b && !c {
+    } else if side1 && !side2 {
         portal[0] = w;
     } else {
         portal[1] = w;
     }
 }
 
-/// Returns whether the ray passes through a portal, within `eps`, metres. The first portal may be a ring
-/// that it does not pass through.
+/// Returns whether the ray crosses a portal, within `eps`, metres. The ray need not cross a portal that is a ring.
 pub fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
     let [a, b, c] = portal.each_ref().map(|corner| &corner.w);
     [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
-        // A product with the edge keeps the digits of small portals.
+        // The product with the edge, not with q, loses no digits for small portals.
         let edge = q - p;
         let side = ray.dot(&p.cross(&edge));
         side >= 0.0 || side * side <= eps * eps * edge.norm_squared()
     })
 }
 
-/// Moves a portal outwards: to known differences as far as they go, to queried ones while the origin is
-/// beyond it, and while the contact is shallow.
+/// Refines the portal outwards: with known differences as long as one is above it, and with support calls as long as
+/// the origin is on its outer side or the contact is shallow.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -260,12 +264,12 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
                 return Ok(());
             }
             let is_along_normal = along_normal || offset < 0.0;
-            let (sample, choice) =
+            let (sample, source) =
                 evaluate_beyond(query, set, fit, portal, &normal, gap, is_along_normal)?;
             w = sample.vertex();
             let is_above = normal.dot(&w.w) - offset > query.scale.height_eps() * length;
             if !is_above {
-                if choice == DirectionSource::Normal {
+                if source == DirectionSource::Normal {
                     return Ok(());
                 }
                 along_normal = true;
@@ -287,10 +291,10 @@ mod tests {
 
     const LIMIT: GapLimit = GapLimit {
         tolerance: 1e-6,
-        share: GAP_REL,
+        rel_tol: GAP_REL,
     };
 
-    /// Returns the portals after discovery and refinement from the centers, `None` for a pair apart.
+    /// Returns the portals after discovery and after refinement, from the centers; `None` for a separated pair.
     fn solve<A: SupportMap, B: SupportMap>(
         a: A,
         b: B,
@@ -325,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ray_passes_through_every_portal() {
+    fn the_ray_crosses_every_portal() {
         let mut r = Random::new(11);
         let mut found = 0;
         for round in 0..600 {
@@ -355,7 +359,7 @@ mod tests {
         assert!(found > 300, "{found}");
     }
 
-    /// Symmetric pairs, whose first vertices tie with the ray.
+    /// Symmetric pairs, whose first vertex is on the ray.
     #[test]
     fn symmetric_pairs_have_portals() {
         let cube = corners(Vec3::repeat(0.5));
