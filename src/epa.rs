@@ -1,11 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The global minimum of the penetration depth, with a certificate: an expanding polytope on known
-//! vertices.
+//! The global minimum of the penetration depth, with a certificate: the expanding polytope algorithm (EPA)
+//! on known vertices.
 //!
-//! [`penetration`] is the driver, and its head has the steps in order; [`expand`] is the loop of the
-//! polytope; [`polytope`] and [`plane`] are its geometry, and know no query.
+//! | file | contents |
+//! |---|---|
+//! | [`penetration`] | the driver; its head lists the steps of the global query |
+//! | [`expand`] | the loop that expands the polytope |
+//! | [`polytope`] | the polytope: insertion of points, closest face, error bound; no support calls |
+//! | [`plane`] | planes and tetrahedra; no support calls |
 
 pub mod expand;
 pub mod penetration;

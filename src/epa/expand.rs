@@ -3,21 +3,28 @@
 
 //! The loop of EPA: expands the polytope at its closest face until the bounds meet.
 //!
-//! 1. The closest face; its distance, less the error, is the lower bound of the depth. Where the origin is
-//!    inside and the gap to the upper bound is allowed: converged.
-//! 2. The known difference farthest along its normal becomes a corner, without a callback, where it closes
+//! Reference: G. van den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects" (2001).
+//!
+//! 1. Find the closest face. Its distance, less the error, is the lower bound of the depth. If the origin is inside
+//!    and the gap to the upper bound is allowed, the loop has converged.
+//! 2. Insert the known difference farthest along the face's normal, without a callback, if it closes at least
 //!    [`GAIN_REL`] of the gap between the face and the upper bound.
-//! 3. Else the callbacks are evaluated: along the face's normal, or where a sphere fit tells ([`evaluate_beyond`]). The point becomes a corner if it is above the face.
-//! 4. A normal that finds nothing above lowers the upper bound, or rounding ends the search.
+//! 3. Otherwise evaluate the callbacks, along the face's normal or along a direction that a sphere fit suggests
+//!    ([`evaluate_beyond`]). Insert the point if it is above the face.
+//! 4. If no point above the face is found along its normal, the support value may lower the upper bound. If it does
+//!    not, the loop ends with [`ExpandEnd::Rounding`].
 //!
-//! Departures from van den Bergen's EPA: planes are interpolated, not computed from corners
-//! ([`crate::epa::polytope`]); known differences come before callbacks; the origin may be outside at first
-//! (its distance to a face is then negative), so that the polytope also is the separation test.
+//! Departures. Planes are interpolated, not computed from corners ([`crate::epa::polytope`]). Known differences are
+//! inserted before callbacks are evaluated. The origin may be outside the polytope at first (its distance to a face is
+//! then negative), so that the polytope is the separation test too.
 //!
-//! Validity: with [`ExpandEnd::Converged`] and the limits, [`EpaPolytope::lower_bound`] is a proven lower
-//! bound, if the polytope encloses its interior point. With [`ExpandEnd::Rounding`] and
-//! [`ExpandEnd::NoRoom`] too, if the closest face is at a distance > 0; else nothing is known but the upper
-//! bound.
+//! Outputs. The upper bound is valid for every end. [`EpaPolytope::lower_bound`] is valid if the polytope encloses its
+//! interior point, and:
+//!
+//! | end | the lower bound is valid |
+//! |---|---|
+//! | [`ExpandEnd::Converged`], [`ExpandEnd::SupportLimit`], [`ExpandEnd::IterationLimit`] | always |
+//! | [`ExpandEnd::Rounding`], [`ExpandEnd::NoRoom`] | if the distance of the closest face is not negative |
 
 use crate::contact::Settings;
 use crate::epa::polytope::EpaPolytope;
@@ -30,21 +37,21 @@ use crate::minkowski::tolerance::{GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::mpr::portal::KNOWN_LEVEL;
 
-/// The share of the gap between the closest face and the upper bound that a known difference must close to
-/// be inserted without a query. Measured: flat from 0.45 to 0.8; without it deep pairs bury most of their
-/// insertions (boxes 19.7k instructions for 12.7k).
+/// The fraction of the gap between the closest face and the upper bound that a known difference must close to
+/// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
+/// the inserted points of deep pairs (boxes: 19.7k instead of 12.7k instructions).
 const GAIN_REL: f64 = 0.6;
-/// The share of the size below which a tolerance is too fine for interpolated planes.
+/// The tolerance, in sizes of D, up to which interpolated planes are not exact enough.
 const EXACT_PLANES_REL: f64 = 1e-11;
 
 /// The limits of a query.
 #[derive(Clone, Copy, Debug)]
 pub struct EpaLimits {
-    /// Largest gap between the bounds.
+    /// The largest gap between the bounds.
     pub gap: GapLimit,
-    /// Support calls.
+    /// The limit of support points of the query, including those before the polytope.
     pub max_points: u64,
-    /// Support calls after the first tetrahedron.
+    /// The limit of support points that expand the polytopes, see [`Settings::max_iterations`].
     pub max_iterations: u64,
 }
 
@@ -60,21 +67,21 @@ impl EpaLimits {
         }
     }
 
-    /// Returns whether the tolerance is finer than what interpolated planes are good for.
+    /// Returns whether the tolerance is too small for interpolated planes.
     pub fn needs_exact_planes(&self, scale: &Scale) -> bool {
         let tolerance = scale.tolerance(self.gap.tolerance);
         !(tolerance > EXACT_PLANES_REL * scale.size() && tolerance > 64.0 * scale.support_eps())
     }
 }
 
-/// The corners of the polytope, by their indices: the interior point or known differences.
+/// The corners of the polytope: the vertex pair of each corner index, or the mark of the interior point.
 pub struct EpaCorners<const C: usize> {
     pairs: [VertexPair; C],
     len: usize,
 }
 
 impl<const C: usize> EpaCorners<C> {
-    /// No corners. All zero, so that no pattern is copied.
+    /// No corners. All bytes are zero, so that the initialisation needs no copy of a constant.
     pub const EMPTY: Self = Self {
         pairs: [VertexPair { a: 0, b: 0 }; C],
         len: 0,
@@ -88,7 +95,7 @@ impl<const C: usize> EpaCorners<C> {
         }
     }
 
-    /// Returns whether another corner has no room.
+    /// Returns whether there is no room for another corner.
     #[inline(always)]
     fn is_full(&self) -> bool {
         self.len >= C
@@ -125,14 +132,17 @@ pub enum ExpandEnd {
     SupportLimit,
     /// [`EpaLimits::max_iterations`].
     IterationLimit,
-    /// No point is above the closest face, which is not at the upper bound.
+    /// No point is above the closest face, but its distance is not the upper bound.
     Rounding,
-    /// The vertices, the corners or the faces are full: go on in larger buffers.
+    /// The buffer of the vertices, corners or faces is full.
     NoRoom,
 }
 
-/// Expands the polytope until the bounds meet. See the head of this file. `iterations`: of the query. `has_larger`: whether larger
-/// buffers take over where these are full.
+/// Expands the polytope until the bounds meet, by the steps at the head of this file. `iterations`: the count of the
+/// query, which continues. `has_larger`: true if the caller continues in larger buffers when these are full.
+///
+/// One loop over shared state: the parts use the closest face, the bounds and the buffers, so that a split would pass
+/// nine arguments.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -151,8 +161,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
 ) -> Result<ExpandEnd, Stop> {
     // The key of the closest face when a fit's direction found nothing above it.
     let mut last_failed_key = -1.0;
-    // Terminates: each turn evaluates, which fills the set, or inserts, which fills the corners, or makes a
-    // key exact.
+    // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
     loop {
         let closest = polytope.closest_face();
         polytope.set_size(query.scale.size());
@@ -169,8 +178,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             }
             return Ok(ExpandEnd::Converged);
         }
-        // While the origin is outside, the buffers are the only limit: the caller's limits must not make
-        // a miss of an overlap.
+        // While the origin is outside, the buffers are the only limit: the caller's limits must not
+        // change an overlap into a separation.
         if is_inside && *iterations >= limits.max_iterations {
             return Ok(ExpandEnd::IterationLimit);
         }
@@ -182,7 +191,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         }
         let face = closest.face;
         let (normal, offset) = (polytope.normal(face), polytope.offset(face));
-        // A queried point is above the face by more than rounding; a known one is worth an insertion.
+        // The least height above the face for an insertion: rounding for evaluated points, more for known ones.
         let queried_level = query.scale.height_eps();
         let level = queried_level
             + if is_inside {
@@ -195,20 +204,20 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let distance = closest.key.sqrt();
         let is_gain =
             !(closest.key > 0.0) || height * distance > GAIN_REL * (upper - distance) * offset;
-        // Of the largest buffers the queries that are left have theirs.
+        // In the largest buffers, room for the corners of the remaining support calls is reserved.
         let has_room = has_larger || C - corners.len > N - set.len();
         if !(height > level && is_gain && has_room) {
             let along_normal = !is_inside || closest.key == last_failed_key;
             let vertices = polytope
                 .corners(face)
                 .map(|id| corners.vertex(set, interior, id));
-            let (sample, choice) =
+            let (sample, source) =
                 evaluate_beyond(query, set, fit, &vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > queried_level {
                 w = sample.vertex();
-            } else if choice != DirectionSource::Normal {
+            } else if source != DirectionSource::Normal {
                 last_failed_key = closest.key;
                 continue;
             } else if query.upper.depth < upper {
@@ -216,7 +225,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             } else if !(height > level) {
                 return Ok(ExpandEnd::Rounding);
             }
-            // Else the callbacks contradict a known difference, which was passed over for them.
+            // Otherwise the callbacks returned less than a known difference, in contradiction: insert that.
         }
         let id = corners.push(w.pair);
         let corner = |id| corners.vertex(set, interior, id).w;
@@ -227,11 +236,11 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     }
 }
 
-/// Returns the face through which the ray along `dir` leaves the polytope, about, and the point of it that
-/// is closest to `foot`, `dir` times the depth.
+/// Returns the face through which the ray along `dir` leaves the polytope, approximately.
 ///
-/// Mostly that is the closest face, `closest`. Where several lie in one plane it is the one closest to the
-/// foot, of all that the ray crosses no later than at the depth.
+/// This is the closest face, `closest`, if its distance to the foot, `dir` times the depth, is small. Otherwise it is
+/// the face closest to the foot among those whose plane the ray crosses before the depth: several faces may lie in one
+/// plane.
 pub fn exit_face<const F: usize>(
     polytope: &EpaPolytope<F>,
     corner: &impl Fn(usize) -> Vec3,

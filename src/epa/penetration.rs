@@ -3,25 +3,35 @@
 
 //! The global minimum of the penetration depth, from start to end.
 //!
-//! 1. *Separating axis*: the first direction, the warm state's or the way from the interior point through
-//!    the origin. Most misses end here.
-//! 2. *Interior point*: the difference of the centers where they are trusted; else the middle of the
-//!    support points along the ray and against it, which is in D for certain.
+//! 1. *Separating axis*: evaluate the first direction, that of the warm state or the *ray*, from the interior point to
+//!    the origin. Most queries of separated objects end here.
+//! 2. *Interior point*: the difference of the centers if they are given; else the middle of the
+//!    support points along the ray and opposite to it, which is always in D.
 //! 3. *Portal*: discovery and refinement ([`crate::mpr::portal`]).
-//! 4. *Certificate*: where the tetrahedron of interior point and portal holds the ball whose radius is the
-//!    upper bound less the allowed gap, the minimum is proven. Most shallow contacts end here.
-//! 5. *Polytope*: EPA from that tetrahedron ([`crate::epa::expand`]), else from the points farthest from a
-//!    point, a line and a plane, else from the tetrahedron of GJK; in buffers that grow.
-//! 6. *Result*: depth and direction are the upper bound's, lower bound and witness points the polytope's.
+//! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
+//!    is the upper bound less the allowed gap, the minimum is proven. Most shallow contacts end here.
+//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron; if it does not come to contain the origin, from
+//!    the points farthest from a point, a line and a plane; then from the tetrahedron of GJK. Full buffers are replaced
+//!    by larger ones.
+//! 6. *Result*: depth and direction are those of the upper bound; lower bound and witness points are the polytope's.
 //!
-//! Departures. Steps 3 to 5 take known differences before callbacks. A known difference beyond a queried
-//! plane shows that a callback contradicts itself; a plane that has the difference of the centers beyond it
-//! shows that this is outside D. The query then starts again, once, with every direction evaluated twice
-//! or without the centers.
+//! Departures. Steps 3 to 5 take known differences before callbacks. If a known difference is beyond an evaluated
+//! support plane, a callback has contradicted itself; if the difference of the centers is beyond one, a center is
+//! outside. The query then starts again, once, with every direction evaluated twice or without the centers.
 //!
-//! Validity. `depth`, `dir`: always; a sound depth. `depth_lower`: proven, of the global minimum (a trusted
-//! center is part of the proof); 0 where nothing is proven. Witness points: always, each in its object.
-//! [`Status::Converged`]: depth − depth_lower is within the gap.
+//! Outputs. All assume valid support functions, and centers that are in their objects.
+//!
+//! | output | valid |
+//! |---|---|
+//! | `depth`, `dir` | always; sound |
+//! | `depth_lower` | always, of the global minimum; 0 if nothing is proven |
+//! | witness points | always, each in its object |
+//!
+//! [`Status::Converged`]: depth − depth_lower is within the allowed gap. [`Status::InconsistentSupport`]: `depth_lower`
+//! is 0, and `depth` is sound only for the points that the support functions returned in the second start.
+//!
+//! Above 400 lines of code: the three starts of the polytope and the three sizes of its buffers share the solver's
+//! state.
 
 use crate::contact::{Penetration, Status};
 use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};
@@ -37,38 +47,43 @@ use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::mpr::portal::{discover, refine};
 use crate::query::warm_start::{WarmKind, WarmStart};
 
-/// The support calls of a default query, at most.
+/// The limit of support points of a default query, up to the end of its polytope.
 pub const MAX_DEFAULT_POINTS: u64 = 160;
-/// The support calls of a query that proves the tolerance, at most. Derived: no call takes more than 400,
-/// and what comes before and after takes up to 80 on nearly coincident bodies (`campaigns -- wide`).
+/// The limit of support points of a query that proves the tolerance, up to the end of its polytope, and of `along`.
+///
+/// No query is to take more than 400 support points in all. Derived: 400 − 80. Measured (`cargo run --release --example
+/// campaigns -- wide`): up to 80 more, on nearly coincident bodies, are evaluated beyond this limit, for starts of the
+/// polytope that do not contain the origin yet and in the local search that follows
+/// ([`MAX_WALK_POINTS`](crate::mpr::local::MAX_WALK_POINTS)). Queries without a polytope have
+/// [`ITERATION_CAP`](crate::math::ITERATION_CAP).
 pub const MAX_PROVEN_POINTS: u64 = 320;
 
-/// The vertices of the small buffers, 6 KB on the stack with their corners and faces: enough for shallow
-/// contacts and most polytopes. Less than 2 KB is zeroed by stores, more byte by byte.
+/// The number of vertices of the small buffers, 6 KB on the stack with their corners and faces: enough for shallow
+/// contacts and most polytopes. (The compiler initialises less than 2 KB by stores, more by a slower loop.)
 pub const SMALL_VERTICES: usize = 24;
 const SMALL_CORNERS: usize = 32;
 const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
-/// The vertices of the large buffers, on the stack.
+/// The number of vertices of the large buffers, on the stack.
 const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
 const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
 const LARGE_FACES: usize = max_faces(LARGE_CORNERS);
-/// The vertices of the buffers that the caller lends.
+/// The number of vertices of the buffers of an [`Arena`].
 const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
 const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
 const ARENA_FACES: usize = max_faces(ARENA_CORNERS);
-/// Room for support calls beyond the limit, which holds only while the origin is inside.
+/// The room for support points above the limit, which applies only while the origin is inside the polytope.
 const SPARE_VERTICES: usize = 8;
-/// The entries that a first tetrahedron may add, for which there must be room.
+/// The largest number of entries that a start of the polytope adds to the vertex set.
 const START_VERTICES: usize = 12;
 
-/// Returns the corners for so many vertices. Known differences become corners without a callback: an
-/// eighth more (measured, deep ellipsoids).
+/// Returns the number of corners for this number of vertices. It is an eighth larger, because known differences become
+/// corners without a callback (measured on deep ellipsoids).
 const fn max_corners(vertices: usize) -> usize {
     vertices + vertices / 8 + 5
 }
 
-/// Returns the faces for so many corners: a closed surface has 2 C − 4, and a fan is made before the faces
-/// that it replaces are freed.
+/// Returns the number of faces for C corners: a closed surface has 2 C − 4 faces, and an insertion makes the new faces
+/// before it frees the old ones.
 const fn max_faces(corners: usize) -> usize {
     (2 * corners).next_multiple_of(8)
 }
@@ -76,19 +91,20 @@ const fn max_faces(corners: usize) -> usize {
 const _: () = assert!(ARENA_CORNERS < 32768 && ARENA_FACES <= crate::epa::polytope::MAX_FACES);
 const _: () = assert!(ARENA_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 
-/// The gap beyond the tolerance that still counts as converged where rounding ended the search, in support
-/// epsilons. Derived: 20 for what a plane and a point above it round by where D is twice the reach, and as
-/// much by which the face found there is closer than the closest.
+/// The gap above the tolerance that counts as converged if rounding ended the search, in support epsilons. Derived: 20
+/// for the rounding of a plane and of a point above it if the size of D is twice the world extent; the rest is a
+/// reserve.
 const ROUNDING_GAP_EPS: f64 = 32.0;
-/// The extent of D, in height epsilons, below which it counts as flat. Derived: as [`ROUNDING_GAP_EPS`].
+/// The extent of D, in height epsilons, up to which it counts as flat. Derived as [`ROUNDING_GAP_EPS`].
 const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
-/// The share of the size that a known corner of a first tetrahedron must be away from the others. Without known
-/// corners, or with any, more proofs end at the support limit (`campaign` in single precision, `wide` at tolerance 0).
+/// The least distance of a known corner of a start from the other corners, in sizes of D. Measured (`cargo test --test
+/// stability` in single precision, `campaigns -- wide` at tolerance 0): if all known corners are accepted, or none, more
+/// proofs end at the support limit.
 const KNOWN_EXTENT_REL: f64 = 1e-3;
-/// The support calls of a polytope after which D counts as round there.
+/// The number of iterations above which D counts as curved at the minimum ([`WarmKind::Round`]).
 const MAX_POLYTOPE_ITERATIONS: u64 = 3;
 
-/// Memory for the largest polytopes. All bytes zero is a valid value.
+/// Buffers for the largest polytopes. All bytes zero is a valid value.
 pub struct EpaBuffers {
     set: VertexSet<ARENA_VERTICES>,
     corners: EpaCorners<ARENA_CORNERS>,
@@ -107,13 +123,13 @@ pub trait Arena {
 /// The input of a query besides the support functions.
 #[derive(Clone, Copy, Debug)]
 pub struct EpaRequest<'a> {
-    /// The difference of the centers that is trusted to lie in D.
+    /// The difference of the centers, which is trusted to lie in D: the interior point.
     pub center: Option<&'a SupportPoint>,
     /// The unit direction of a cold start: from an interior point through the origin.
     pub ray: Vec3,
-    /// The state of the last query; not that of a pair that was apart.
+    /// The state of the last query; cold if the pair was separated.
     pub warm: WarmStart,
-    /// Limits of the expansion.
+    /// The limits of the query.
     pub limits: EpaLimits,
 }
 
@@ -132,39 +148,40 @@ impl EpaRequest<'_> {
 /// A tetrahedron to start the polytope from.
 type Start = [Vertex; 4];
 
-/// Reason why a polytope ended.
+/// Result of an expansion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PolytopeEnd {
-    /// The origin is shown inside, and the answer is written.
+    /// The polytope contains the origin, and the result is written.
     Inside(Status),
-    /// The origin is not shown inside.
+    /// The polytope does not provably contain the origin.
     Outside,
-    /// The buffers are full.
+    /// The buffers are full, and there are larger ones.
     NoRoom,
 }
 
-/// A query on its way.
+/// The state of a query.
 struct Solver<'q, 'm, A, B> {
     query: &'q mut SupportQuery<'m, A, B>,
     limits: &'q EpaLimits,
-    /// The interior point with the points of the objects that it is the difference of.
+    /// The interior point, and the points of the objects whose difference it is.
     interior: SupportPoint,
     fit: SphereFit,
-    /// Support calls of the polytopes.
+    /// The number of support points that expanded polytopes.
     iterations: u64,
-    /// Gap between the depth in `hit` and its lower bound, metres; infinite before the first answer.
+    /// The gap between the bounds in `hit`, metres; infinite before the first result.
     gap: f64,
     hit: &'q mut Penetration,
 }
 
-/// Finds the global minimum of the penetration depth. `first`: the support point along
-/// [`EpaRequest::first_dir`], which does not separate ([`SupportQuery::evaluate_first`]: most misses end
-/// there, before this function's stack is in use). Without an `arena` the buffers on the stack are all
-/// there is. The overlap in `hit` has no contact position. Returns the state for the next query; `set` holds the
-/// vertices of the first support calls, for the contact position.
+/// Finds the global minimum of the penetration depth, by the steps at the head of this file, and writes it to `hit`,
+/// without a contact position. `first`: the support point along [`EpaRequest::first_dir`], which does not separate
+/// ([`SupportQuery::evaluate_first`]: most queries of separated objects end there, before this function's stack is in
+/// use). Without an `arena` there are only the buffers on the stack. Returns the status and the state for the next
+/// query; `set` has the vertices of the first support calls, for the contact position.
 ///
 /// # Errors
-/// [`Stop::Separated`]: apart, or touching within rounding. [`Fault::NonFinite`]; [`Fault::NoMemory`].
+/// [`Stop::Separated`]: the objects are separated, or in contact within rounding. [`Fault::NonFinite`];
+/// [`Fault::NoMemory`].
 #[inline(always)]
 pub fn penetration<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
@@ -178,8 +195,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     set.push(dir, first);
     let warm = &request.warm;
     let is_warm = warm.kind == WarmKind::Overlap;
-    // No start of its own: a guess, or one whose support value is far above the last depth; and of two round objects,
-    // where its vertex is a poor corner of a portal. Negated for NaN.
+    // The ray is evaluated too if the warm direction is only a guess (its depth is 0), if its support value is more than
+    // twice the last depth, or if both objects are round, where its vertex is a poor corner of a portal. Negated for NaN.
     let is_round = warm.radius[0] * warm.radius[1] > 0.0;
     if is_warm && (is_round || !(query.upper.depth <= 2.0 * warm.depth)) {
         query.evaluate(set, &request.ray)?;
@@ -195,7 +212,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     };
     let mut center = request.center;
     let mut status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
-    // A plane shows that the center is outside D, or callbacks contradict themselves: once more.
+    // A support plane excludes the center from D, or a callback contradicts itself: start again.
     let is_outside = center.is_some() && solver.query.interior.is_none();
     let is_inconsistent = solver.query.is_inconsistent;
     if is_outside || is_inconsistent {
@@ -221,7 +238,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 }
 
 impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
-    /// Finds an interior point, a portal, a certificate, or expands polytopes.
+    /// Runs steps 2 to 6.
     fn run(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
@@ -239,7 +256,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             None => Some(self.find_interior(set, &mut ray)?),
         };
         let portal = self.find_portal(set, &ray)?;
-        // A full set has no room for it: the last entry may be a corner.
+        // Not into a full set: it would replace the last entry, which may be a corner.
         if let Some((dir, point)) = opposite.as_ref().filter(|_| !set.is_full()) {
             let index = set.push(dir, point);
             if self.query.upper.dir == *dir {
@@ -254,9 +271,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.expand_from(set, portal.as_ref(), is_warm, arena)
     }
 
-    /// Takes the middle of the support points along the ray and against it for the interior point, and
-    /// returns the opposite sample, which is removed from the set: it would be a corner of a wide portal.
-    /// Turns the ray to start in that point.
+    /// Sets the interior point to the middle of the support points along the ray and opposite to it, and `ray` to the
+    /// direction from there to the origin. Returns the opposite direction and its point, which are removed from the set:
+    /// as a corner the point would make the portal wide.
     fn find_interior<const N: usize>(
         &mut self,
         set: &mut VertexSet<N>,
@@ -315,8 +332,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
     }
 
-    /// Proves the minimum from the tetrahedron of interior point and portal, if it can, and writes the
-    /// answer.
+    /// Tries to prove the minimum from the tetrahedron of interior point and portal. Returns whether it is proven and
+    /// written.
     #[inline(always)]
     fn certify(
         &mut self,
@@ -344,9 +361,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(true)
     }
 
-    /// Evaluates one more direction where a warm start has ended within the gap but not within the
-    /// tolerance, so that directions of moving pairs follow them: the prediction of the sphere fits where
-    /// they are confirmed, else the normal of the closest face.
+    /// Evaluates one more direction, after a warm start has ended within the gap but not within the tolerance, so that
+    /// the direction tracks the motion of the pair: the prediction of the sphere fits if they are confirmed, else the
+    /// normal of the closest face.
     fn refine_direction<const N: usize>(
         &mut self,
         set: &mut VertexSet<N>,
@@ -367,7 +384,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
     }
 
-    /// Expands polytopes from the starts there are, until one shows the origin inside.
+    /// Expands polytopes from up to three starts, until one contains the origin and is not ended by rounding.
     #[inline(never)]
     fn expand_from(
         &mut self,
@@ -389,14 +406,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             let Some(start) = start else { continue };
             let mut found = self.expand_small(set, &start, is_warm)?;
             if found == PolytopeEnd::NoRoom {
-                // From the same tetrahedron: the known vertices rebuild the polytope without a callback.
+                // From the same tetrahedron again: the known vertices rebuild the polytope without a callback.
                 let mut buffers = None;
                 found = self.expand_large(set, &start, arena, &mut buffers)?;
                 if let Some(buffers) = buffers {
                     found = self.expand_in_arena(&start, buffers)?;
                 }
             }
-            // From another tetrahedron rounding may end the search later.
+            // If rounding ended the expansion, one from the next start may end closer to the minimum.
             if let PolytopeEnd::Inside(found) = found {
                 status = found;
                 if status != Status::Rounding {
@@ -424,8 +441,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.expand_in(set, &mut corners, &mut polytope, start, is_warm, true)
     }
 
-    /// Expands a polytope in the large buffers. Where they are full and there is an arena, its buffers take
-    /// the vertices.
+    /// Expands a polytope in the large buffers. If they become full and there is an arena, copies the vertices to its
+    /// buffers and stores these in `buffers`.
     #[cold]
     #[inline(never)]
     fn expand_large<'m>(
@@ -456,7 +473,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(found)
     }
 
-    /// Expands a polytope in the buffers of an arena, which hold the vertices.
+    /// Expands a polytope in the buffers of an arena, which already have the vertices.
     #[cold]
     #[inline(never)]
     fn expand_in_arena(
@@ -472,8 +489,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.expand_in(set, corners, polytope, start, false, false)
     }
 
-    /// Expands a polytope from a tetrahedron and writes the answer, unless larger buffers are needed and
-    /// there are any.
+    /// Expands a polytope from a tetrahedron in these buffers, and writes the result unless the expansion is to continue
+    /// in larger ones.
     #[inline(always)]
     fn expand_in<const N: usize, const C: usize, const F: usize>(
         &mut self,
@@ -508,17 +525,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.compute_result(set, corners, polytope, end, is_warm)
     }
 
-    /// Returns the interior point and the points farthest from it, from a line and from a plane, known or
-    /// queried; `None` where D is flat within rounding.
+    /// Returns the interior point and three points of D, known or evaluated: one far from it, one far from the line of
+    /// the two, and one far from the plane of the three. `None` if D is flat within rounding.
     #[cold]
     #[inline(never)]
     fn find_farthest<const N: usize>(
         &mut self,
         set: &mut VertexSet<N>,
     ) -> Result<Option<Start>, Stop> {
-        let apex = self.interior_vertex();
-        let mut found = [apex; 4];
-        let c = apex.w;
+        let interior = self.interior_vertex();
+        let mut found = [interior; 4];
+        let c = interior.w;
         for i in 1..4 {
             let axes = match i {
                 1 => [self.query.upper.dir, perpendicular(&self.query.upper.dir)],
@@ -532,8 +549,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 }
             };
             let mut best = 0.0;
-            // Known differences first; then queries along the axes, the second only where the first finds
-            // nothing.
+            // Known differences first; then support calls along the first axis, and along the second if that
+            // finds no point.
             for pass in 0..3 {
                 let Some(n) = normalise_unscaled(&axes[usize::from(pass > 1)]) else {
                     continue;
@@ -548,7 +565,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                         (best, found[i]) = (distance, v);
                     }
                 }
-                // A known difference need not be the farthest one, but it must not make a sliver.
+                // A known difference need not be the farthest point, but must not make the tetrahedron thin.
                 let scale = &self.query.scale;
                 let known = if pass == 0 {
                     KNOWN_EXTENT_REL * scale.size()
@@ -566,8 +583,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(Some(found))
     }
 
-    /// Returns the tetrahedron of GJK, which decides whether the objects overlap where no polytope has come
-    /// to hold the origin.
+    /// Returns the tetrahedron with which GJK proves the overlap, if no polytope has come to contain the origin.
     #[cold]
     #[inline(never)]
     fn find_gjk_tetrahedron<const N: usize>(
@@ -577,14 +593,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let mut known = VertexSet::<CAPACITY>::EMPTY;
         let dir = self.query.upper.dir;
         let found = contains_origin(self.query, &mut known, None, &dir, false)?;
-        // The points may be no support points: they have no direction.
+        // The points need not be support points, so they are stored without a direction.
         Ok(Some(found.corners.map(|point| {
             let pair = VertexSet::<N>::pair_of_entry(set.push(&Vec3::zeros(), &point));
             Vertex { w: point.v, pair }
         })))
     }
 
-    /// Writes the answer of an expansion, unless an earlier one is as close to its lower bound.
+    /// Writes the result of an expansion, unless the gap of an earlier result is as small.
     #[inline(never)]
     fn compute_result<const N: usize, const C: usize, const F: usize>(
         &mut self,
@@ -623,7 +639,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 .map(|id| corners.vertex(set, &interior, id));
             self.write_result_on_face(set, face, lower, tolerance);
         }
-        // The bound as it is rounded down must be within the gap, whatever ended the search.
+        // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
         let tolerance = larger(self.limits.gap.tolerance, tolerance);
         let allowed = self
             .limits
@@ -642,11 +658,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         })
     }
 
-    /// Writes the answer along the direction of the upper bound; `face`: where the ray along it leaves the
-    /// polytope. The witness points are those of the closest point to the foot depth · dir: on the face, or
-    /// where that is farther away than the gap, on a triangle of two of its corners and the support vertex
-    /// of the direction or the interior point. (The ball of the lower bound is in the hull of these: a point
-    /// of the ray between the bounds is.)
+    /// Writes the result of the upper bound. `face`: the face through which the ray along its direction leaves the
+    /// polytope.
+    ///
+    /// The witness points are those of the point closest to the foot, depth · dir, on one of these triangles:
+    ///
+    /// 1. the face, if that point is within the gap of the foot;
+    /// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction;
+    /// 3. or with one corner replaced by the interior point.
     #[inline(always)]
     fn write_result_on_face<const N: usize>(
         &mut self,
@@ -667,10 +686,10 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 pair,
             };
             let corners = face;
-            for apex in [support, self.interior_vertex()] {
+            for replacement in [support, self.interior_vertex()] {
                 for i in 0..3 {
                     let mut triangle = corners;
-                    triangle[i] = apex;
+                    triangle[i] = replacement;
                     let other = closest(&triangle);
                     if other.distance2 < best.distance2 {
                         (best, face) = (other, triangle);
@@ -692,7 +711,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.write_result(lower, points);
     }
 
-    /// Writes the answer where nothing is known but the upper bound.
+    /// Writes a result with only the upper bound.
     fn write_upper_bound<const N: usize>(&mut self, set: &VertexSet<N>) {
         let point = set.point(VertexSet::<N>::pair_of_entry(self.query.upper.index));
         self.write_result(0.0, [point.v1, point.v2]);

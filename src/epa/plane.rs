@@ -1,27 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Homogeneous planes: all x with N·x = d, where N is not normalised; and the four of a tetrahedron.
+//! Homogeneous planes N·x = d, where N is not normalised, and the four planes of a tetrahedron.
 //!
-//! Planes are computed in pairs of numbers, which the compiler turns into packed instructions: plain
-//! expressions make it pair other numbers and store planes in pieces (10 to 17 % more instructions for a
-//! whole query).
+//! Error model. The planes of a [`Tetrahedron`] have unit normals, and d is the least N·corner as computed. So each
+//! corner is at most [`PLANE_ERROR_ULPS`] ulps of the size of D below its plane; the distance of the plane from the
+//! origin has the same error. [`crate::epa::polytope`] adds to it what interpolation rounds.
+//!
+//! The arithmetic is on pairs of numbers, which the compiler turns into packed instructions. With scalar
+//! expressions it pairs other numbers and stores planes in pieces. (Measured, rustc 1.85, x86-64: 10 to 17 % more
+//! instructions for a whole query.)
 
 use crate::math::{Vec3, larger, lesser};
 
-/// The extent below which a triangle has no area, in ulps of the size. Derived: twice the error of a plane
-/// through its corners.
+/// The height of a triangle up to which it counts as without area, in ulps of the size. Derived: twice the error of a
+/// plane through its corners.
 pub const MIN_EXTENT_ULPS: f64 = 16.0;
-/// The error of a plane that is computed from its corners, in ulps of the size. Derived: two products of a
-/// unit vector with a point, three each and their sums, the length of the unit vector and the coordinates
-/// of the interior point.
+/// The error of a plane that is computed from its corners, in ulps of the size. Derived: two dot products of a
+/// unit vector and a point, with three products and two sums each; the normalisation of the unit vector; and the
+/// coordinates of the interior point.
 pub const PLANE_ERROR_ULPS: f64 = 8.0;
-/// The least six-fold volume of a tetrahedron, in ulps of the cube of its longest edge. Derived: a face's
-/// normal is off by six ulps of the square of that edge, which is as much of its height as its area is
-/// smaller; the interior point is a quarter of that height below the face, half of which is to remain.
+/// The least six-fold volume of a tetrahedron, in ulps of the cube of its longest edge L. Derived: the normal of a
+/// face, before it is normalised, has an error of 6 ulps of L². For a face of area A and a height H of the tetrahedron
+/// above it, the plane is then off by 6 ulps · L³ / (2 A) in the distance L, and the middle of the tetrahedron is H / 4
+/// below it. The error is at most half of that if 2 A H, the six-fold volume, is at least 48 ulps of L³; 64 leaves a reserve.
 const MIN_VOLUME_ULPS: f64 = 64.0;
 
-/// Two numbers side by side.
+/// A pair of numbers for packed arithmetic.
 #[derive(Clone, Copy, Debug)]
 struct Lanes([f64; 2]);
 
@@ -47,25 +52,25 @@ impl Lanes {
     }
 }
 
-/// A plane (N, d); also a point (p, −1), so that their product is the height of p.
+/// A plane (N, d), or a point (p, −1). Their dot product is the height of p above the plane, times |N|.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane(Lanes, Lanes);
 
 impl Plane {
-    /// Makes the plane with this normal, N·x = d.
+    /// Makes the plane N·x = d with the normal N = `n`.
     #[inline(always)]
     pub fn new(n: &Vec3, d: f64) -> Self {
         Self(Lanes([n.x, n.y]), Lanes([n.z, d]))
     }
 
-    /// Makes a point, to take heights of.
+    /// Makes the point (p, −1), for [`Plane::height`].
     #[inline(always)]
     pub fn point(p: &Vec3) -> Self {
-        // If the compiler knew the −1, its product would leave the lanes.
+        // `black_box` keeps the multiplication by −1 in the packed instruction.
         Self::new(p, core::hint::black_box(-1.0))
     }
 
-    /// Makes a plane of the four numbers N, d.
+    /// Makes the plane of the four numbers N, d.
     #[inline(always)]
     pub fn of(a: &[f64; 4]) -> Self {
         Self(Lanes([a[0], a[1]]), Lanes([a[2], a[3]]))
@@ -89,14 +94,14 @@ impl Plane {
         self.1.0[1]
     }
 
-    /// Returns N·p − d for a [`Plane::point`]: its height above the plane, times |N|.
+    /// Returns N·p − d for a [`Plane::point`]: the height of p above the plane, times |N|.
     #[inline(always)]
     pub fn height(&self, point: &Self) -> f64 {
         let x = self.0.times(point.0).plus(self.1.times(point.1));
         x.0[0] + x.0[1]
     }
 
-    /// Returns the plane a share `w` of the way to another: it holds their common line.
+    /// Returns the interpolated plane (1 − w) self + w other, which contains the common line of both.
     #[inline(always)]
     pub fn towards(&self, other: &Self, w: f64) -> Self {
         let w = Lanes([w, w]);
@@ -106,7 +111,7 @@ impl Plane {
         )
     }
 
-    /// Returns the square of the distance from the origin with the sign of d, m², and |N|².
+    /// Returns the squared distance from the origin with the sign of d, m²; and |N|².
     #[inline(always)]
     pub fn signed_square(&self) -> (f64, f64) {
         let a = self.0.times(self.0);
@@ -123,24 +128,24 @@ impl Plane {
     }
 }
 
-/// A tetrahedron that is not flat, with its planes.
+/// A tetrahedron with a volume above rounding, and its planes.
 #[derive(Clone, Copy, Debug)]
 pub struct Tetrahedron {
-    /// The planes of the faces (0 2 1), (0 1 3), (1 2 3), (2 0 3), of unit normals that look outwards.
+    /// The planes of the faces (0 2 1), (0 1 3), (1 2 3), (2 0 3), with outward unit normals.
     pub planes: [Plane; 4],
-    /// The points 1 and 2 have changed places, so that the normals point outwards.
+    /// True if points 1 and 2 are exchanged, so that the normals point outwards.
     pub is_flipped: bool,
-    /// The middle of the four points: below every plane by at least `interior_clearance`.
+    /// The mean of the four points.
     pub middle: Vec3,
-    /// Metres.
+    /// A lower bound of the distance of `middle` below every plane, metres.
     pub interior_clearance: f64,
     /// The error of the planes, metres.
     pub error: f64,
 }
 
 impl Tetrahedron {
-    /// Makes the tetrahedron of four points; `None` where it is flat within rounding. `ulp`: of the size
-    /// of D, metres.
+    /// Makes the tetrahedron of four points; `None` if it is flat within rounding. `ulp`: an ulp of the size of D,
+    /// metres.
     #[inline(always)]
     pub fn new([o, mut a, mut b, c]: [Vec3; 4], ulp: f64) -> Option<Self> {
         let extent = MIN_EXTENT_ULPS * ulp;
@@ -149,7 +154,7 @@ impl Tetrahedron {
         let volume = base.dot(&g);
         let long2 = larger(larger(e.norm_squared(), f.norm_squared()), g.norm_squared());
         let min_area2 = extent * extent * long2;
-        // The sign of a smaller volume is rounding, and with it what is outside.
+        // For a smaller volume the sign, and thus the outward direction, is undecided.
         let min_volume = MIN_VOLUME_ULPS * f64::EPSILON * long2;
         // Negated for NaN.
         if !(volume * volume > min_volume * min_volume * long2) {
@@ -161,7 +166,7 @@ impl Tetrahedron {
             (x, y, below) = (f, e, base);
             (a, b) = (b, a);
         }
-        // Not minus the sum of the others, which is rounding for a thin tetrahedron.
+        // The third normal is not minus the sum of the others, which is mostly rounding for a thin tetrahedron.
         let normals = [below, x.cross(&g), (y - x).cross(&(g - x)), g.cross(&y)];
         let corners = [[o, b, a], [o, a, c], [a, b, c], [b, o, c]];
         let mut planes = [Plane::new(&o, 0.0); 4];
@@ -176,7 +181,7 @@ impl Tetrahedron {
             *plane = Plane::new(&n, lesser(lesser(n.dot(&p), n.dot(&q)), n.dot(&r)));
         }
         let error = PLANE_ERROR_ULPS * ulp;
-        // The middle is a quarter of the opposite corner's height below a face.
+        // The distance of the middle below a face is a quarter of the opposite corner's.
         let interior_clearance = 0.25 * volume.abs() / widest2.sqrt();
         (interior_clearance >= error).then_some(Self {
             planes,
@@ -187,8 +192,8 @@ impl Tetrahedron {
         })
     }
 
-    /// Returns the least signed distance of a plane from the origin, metres: a ball of that radius around
-    /// the origin, less the error, is inside.
+    /// Returns the least signed distance of a plane from the origin, metres. The ball around the origin of that radius
+    /// less `error` is in the tetrahedron.
     #[inline(always)]
     pub fn inner_radius(&self) -> f64 {
         let [a, b, c, d] = self.planes.each_ref().map(Plane::offset);

@@ -1,123 +1,129 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The polytope of EPA: triangles with homogeneous planes, half-edges, insertion of points. It knows no
-//! query.
+//! The polytope of EPA: triangles with homogeneous planes, half-edges, insertion of points. It makes no support
+//! calls.
 //!
 //! # Insertion by interpolation
 //!
-//! A new point p replaces the *visible* faces, those that it is above, by a fan over their *horizon*. A
-//! horizon edge is between a visible face F, which p is f > 0 above, and a hidden face G, which it is
-//! g <= 0 above. Any plane through the edge is a combination of the two, and the one through p is
+//! A new point p replaces the *visible* faces, whose planes it is above, by a fan over their *horizon*. A
+//! horizon edge is between a visible face F, whose plane is f > 0 below p, and a hidden face G, for which the height
+//! of p is g <= 0. Every plane through the edge is a combination of the two, and the one through p is
 //!
 //!   F′ = F + w (G − F),   w = f / (f − g):   f + w (g − f) = 0.
 //!
 //! (The double description of a polytope: Motzkin and others, 1953; Fukuda and Prodon, 1996.) It takes one
-//! division, no coordinates of corners, no cross product and no root. Since 0 < w <= 1 errors are averaged,
-//! not amplified, and a sliver's plane is between two good ones. A point below both F and G is below F′:
+//! division, no coordinates of corners, no cross product and no root. Since 0 < w <= 1, errors are averaged,
+//! not amplified, and the plane of a sliver lies between two well-conditioned ones. A point below both F and G is
+//! below F′:
 //!
 //! - the *interior point*, the middle of the first tetrahedron, stays below every plane, by the least
-//!   *interior_clearance* of the planes that were computed from corners, and
+//!   *interior clearance* of the planes that were computed from corners, and
 //! - an origin below every plane (d > 0) stays there.
 //!
-//! A point hardly above G counts as on it (g is taken as 0, w = 1): the new face has G's plane.
+//! If p is above G by less than the height at which points count as above a face, g is set to 0 (w = 1): the new face
+//! has G's plane.
 //!
 //! # The bound
 //!
-//! *Invariant*: the corners v of a face have N·v >= d, within [`EpaPolytope::error`]. So its triangle is at
-//! least d / |N| away from the origin. The closed surface winds around the interior point once: it did as
-//! a tetrahedron, and while that point is below every plane no triangle reaches it. Where all d > 0, no
-//! triangle meets the segment from it to the origin either, both ends being below the plane and the
-//! corners not; so the surface winds around the origin once, and around every point nearer than its closest
+//! *Invariant*: the corners v of a face have N·v >= d, within [`EpaPolytope::error`]. So the distance of its triangle
+//! from the origin is at least d / |N|. The closed surface winds around the interior point once: it did as
+//! a tetrahedron, and as long as that point is below every plane no triangle reaches it. If all d > 0, no
+//! triangle meets the segment from it to the origin either, because both ends are below the plane and the
+//! corners are not; so the surface winds around the origin once, and around every point closer to it than the closest
 //! triangle. That ball is in the hull of the corners. The surface need not be convex for this: convexity
-//! decides how fast the bound grows. Where the interior_clearance is no more than the error
-//! ([`EpaPolytope::encloses_interior_point`]) nothing is proven.
+//! decides how fast the bound grows. If the interior clearance is less than the error
+//! ([`EpaPolytope::encloses_interior_point`]), nothing is proven.
 //!
 //! # Repairs, all under that invariant
 //!
-//! - *Cancelled normals.* Between nearly opposite normals |N′| is nearly 0. There the plane is computed from
-//!   its corners ([`EpaPolytope::recompute_plane`]), which inherits nothing: it is taken only where it turns
-//!   no other way, has the interior point below it, and d > 0 where that was so. Else F′ is normalised, and
-//!   the error with it; or, where nothing of it is left, the new face has F's plane, which its corners are
-//!   on or above.
-//! - *No single horizon.* Where rounding has made the visible faces no disc, nothing is changed, and fewer
-//!   of them are taken for visible ([`EpaPolytope::insert`]); the first one alone always is a disc.
+//! - *Cancelled normals.* Between nearly opposite normals |N′| is nearly 0. The plane is then computed from
+//!   its corners ([`EpaPolytope::recompute_plane`]). Since it has none of the inherited properties, it is used only if
+//!   its normal is on the side of N′, the interior point is below it, and d > 0 if that holds for F′. Otherwise F′ is
+//!   normalised, which scales the error; or, if F′ is mostly rounding, the new face has F's plane, which its corners
+//!   are on or above.
+//! - *The horizon is not a single closed loop*, because of rounding. The insertion is reverted, and repeated with
+//!   fewer visible faces ([`EpaPolytope::insert`]). With only the first face the horizon is always its three edges.
 //!
 //! # Layout
 //!
-//! Arrays, not structs: a sweep over the keys finds the closest face without a heap. A half-edge is
-//! 4 · face + edge; edge i leads from corner i to corner i + 1, counter-clockwise seen from outside. Faces
-//! outside use have the key +∞ and are chained.
+//! A struct of arrays: one sweep over the keys finds the closest face, without a heap. A half-edge has the index
+//! 4 · face + edge; edge i leads from corner i to corner i + 1, counterclockwise seen from outside. Free faces have
+//! the key +∞ and form a linked list.
 //!
-//! Above 400 lines, half of them the tests of these invariants.
+//! Above 400 lines of code: insertion, repairs and error bound share the arrays and the invariant.
 
 use crate::epa::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
 use crate::math::{Vec3, larger, lesser, normal};
 
-/// No half-edge: the bottom of the stack of half-edges in [`EpaPolytope::walk_visible`].
+/// The mark of the bottom of the stack of half-edges in [`EpaPolytope::walk_visible`].
 const STACK_BOTTOM: u16 = u16::MAX;
-/// The steps to the next and the previous half-edge of a face, by the edge.
+/// The steps to the next and the previous half-edge of a face, for each edge.
 const NEXT: [i8; 4] = [1, 1, -2, 0];
 const PREVIOUS: [i8; 4] = [2, -1, -1, 0];
-/// The low bits of a key that hold the index of its face. They move a distance by 5e-13 of itself, in the
-/// order of the faces alone.
+/// The low bits of a key, which hold the index of its face. They change the distance that a key stands for by 5e-13,
+/// relatively; this affects only the order of the faces.
 const INDEX_MASK: u64 = 0xfff;
-/// The share of a distance that the index may stand for, and more.
+/// An upper bound of the relative error of a distance that is caused by the index bits of its key.
 const KEY_ERROR_REL: f64 = 1e-12;
-/// The most faces whose indices fit.
+/// The largest number of faces whose indices fit in a key.
 pub const MAX_FACES: usize = 4096;
-/// |N|² below which a plane has lost a digit to interpolation and is computed from its corners. Derived:
-/// the error stays within ten times that of its parents.
+/// The |N|² below which an interpolated plane has lost a decimal digit and is computed from its corners. Derived: above
+/// it the error is at most ten times that of the two parents.
 const MIN_INTERPOLATED_N2: f64 = 0.01;
-/// |N|² below which nothing of an interpolated plane is left: two digits more.
+/// The |N|² below which an interpolated plane is not usable: two more digits are lost.
 const MIN_USABLE_N2: f64 = 1e-6;
-/// The largest error that normalising a plane may lead to, in ulps of the size. Insensitive, 1e4 to 1e6 on
-/// the recorded contacts: far below the tolerances that interpolated planes serve.
+/// The largest error up to which a plane may be normalised, in ulps of the size. Insensitive, 1e4 to 1e6 on the recorded
+/// contacts: far below the tolerances at which interpolated planes are used.
 const MAX_SCALED_ERROR_ULPS: f64 = 1e5;
-/// The error that an insertion adds, in ulps of the size. Derived: two products and their sum, an ulp of
-/// the size each, ten times as much where |N| is a tenth.
+/// The error that an insertion adds, in ulps of the size. Derived: two products and their sum round to 2 ulps of the
+/// size, which is ten times as much for |N| = 0.1.
 const INSERTION_ERROR_ULPS: f64 = 20.0;
 
 /// A polytope with room for `F` faces, whose corners have indices below 32768.
 #[repr(C)]
 pub struct EpaPolytope<const F: usize> {
     planes: [[f64; 4]; F],
-    /// An ulp of the size of D, metres. (A number between two arrays has a small polytope zeroed one by
-    /// one: a larger block is zeroed byte by byte.)
+    /// An ulp of the size of D, metres. In this place it splits the zeros of the arrays into two blocks, for which the
+    /// compiler makes vector stores, where one larger block is filled byte by byte.
     ulp: f64,
-    /// d|d| / |N|² with the index of the face in its low bits.
+    /// The key of each face: its signed squared distance d|d| / |N|², with the index of the face in the low bits.
     keys: [f64; F],
-    /// The half-edge on the other side of each of the three edges. The fourth is used while a fan is made:
-    /// a new face keeps the half-edge there that its edge 0 takes the place of (for
-    /// [`EpaPolytope::revert`]), and a visible face what is under its half-edge on the stack.
+    /// The half-edge on the other side of each of the three edges. The fourth slot is used during an insertion: a new
+    /// face stores the half-edge that its edge 0 replaces, for [`EpaPolytope::revert`]; a visible face stores the link
+    /// to the next lower half-edge on the stack of [`EpaPolytope::walk_visible`].
     twins: [[u16; 4]; F],
-    /// Four corners of 16 bits: 0, 1, 2, and 0 again.
+    /// The corners of each face, 16 bits each: 0, 1, 2, and 0 again.
     corners: [u64; F],
-    /// The next face outside use, or the next visible one.
+    /// The next free face for a free face, the next visible face for a visible one.
     next: [u16; F],
+    /// The first free face.
     free: usize,
+    /// All faces that were ever used have indices below this.
     used: usize,
     interior: Vec3,
-    /// The least distance of the interior point from a plane, in units of its |N|, metres.
+    /// A lower bound of d − N·interior for all faces, metres.
     interior_clearance: f64,
+    /// The error of the distance of a plane, metres.
     error: f64,
-    /// |N|² below which planes are computed from their corners.
-    cancelled: f64,
-    /// [`KEY_ERROR_REL`], or 0 where keys are made exact ([`EpaPolytope::refresh_keys`]).
+    /// The |N|² below which planes are computed from their corners.
+    min_n2: f64,
+    /// [`KEY_ERROR_REL`], or 0 if keys are recomputed exactly ([`EpaPolytope::refresh_keys`]).
     key_error: f64,
 }
 
-/// The closest face and its signed square distance, m².
+/// The closest face and its signed squared distance, m².
 #[derive(Clone, Copy, Debug)]
 pub struct ClosestFace {
     /// The index of the face.
     pub face: usize,
-    /// d|d| / |N|², to 1e-12 of itself.
+    /// Its key, d|d| / |N|² with a relative error of at most 1e-12.
     pub key: f64,
 }
 
 impl<const F: usize> EpaPolytope<F> {
-    /// Not fit for use before [`EpaPolytope::start`]. All zero, so that no pattern is copied.
+    /// A polytope without faces, to be filled by [`EpaPolytope::start`]. All bytes are zero, so that the initialisation
+    /// needs no copy of a constant.
     pub const BLANK: Self = Self {
         planes: [[0.0; 4]; F],
         ulp: 0.0,
@@ -130,11 +136,11 @@ impl<const F: usize> EpaPolytope<F> {
         interior: Vec3::new(0.0, 0.0, 0.0),
         interior_clearance: 0.0,
         error: 0.0,
-        cancelled: 0.0,
+        min_n2: 0.0,
         key_error: 0.0,
     };
 
-    /// Returns a blank polytope for points of this size. See the field `ulp`.
+    /// Returns a blank polytope for points of this size, metres. See the field `ulp`.
     #[inline(always)]
     pub fn blank(size: f64) -> Self {
         Self {
@@ -189,20 +195,20 @@ impl<const F: usize> EpaPolytope<F> {
         [c & 0xffff, c >> 16 & 0xffff, c >> 32 & 0xffff].map(|i| i as usize)
     }
 
-    /// Returns N of a face: outward, and no longer than 1 by more than rounding.
+    /// Returns N of a face: outward, and at most 1 long, within rounding.
     #[inline(always)]
     pub fn normal(&self, f: usize) -> Vec3 {
         self.plane(f).normal()
     }
 
-    /// Returns d of a face, for its [`EpaPolytope::normal`].
+    /// Returns d of a face, which belongs to its [`EpaPolytope::normal`].
     #[inline(always)]
     pub fn offset(&self, f: usize) -> f64 {
         self.plane(f).offset()
     }
 
-    /// Returns the distance of a face's plane from the origin, metres, negative where the origin is
-    /// outside, less the error.
+    /// Returns the distance of a face's plane from the origin less the error, metres; negative if the origin is
+    /// outside.
     fn distance(&self, f: usize) -> f64 {
         let plane = self.plane(f);
         plane.offset() / plane.normal().norm() - self.error
@@ -214,7 +220,7 @@ impl<const F: usize> EpaPolytope<F> {
         self.error
     }
 
-    /// Takes the size of D into account, metres, where it has grown.
+    /// Scales the error to the size of D, metres, if that has grown.
     #[inline(always)]
     pub fn set_size(&mut self, size: f64) {
         let ulp = f64::EPSILON * size;
@@ -233,13 +239,13 @@ impl<const F: usize> EpaPolytope<F> {
 
     #[inline(always)]
     fn key(f: usize, square: f64) -> f64 {
-        // Live faces have finite keys.
+        // Faces in use have finite keys.
         let finite = if square < f64::MAX { square } else { f64::MAX };
         f64::from_bits(finite.to_bits() & !INDEX_MASK | f as u64)
     }
 
-    /// Begins with a tetrahedron whose points have the indices 0 to 3. `is_exact`: planes are computed from
-    /// their corners throughout, for tolerances that interpolated planes are too coarse for.
+    /// Makes the polytope a tetrahedron whose points have the indices 0 to 3. `is_exact`: true if all planes are to be
+    /// computed from their corners, for tolerances that are too small for interpolated planes.
     #[inline(always)]
     pub fn start(&mut self, tetrahedron: &Tetrahedron, is_exact: bool) {
         let (a, b) = if tetrahedron.is_flipped {
@@ -263,22 +269,22 @@ impl<const F: usize> EpaPolytope<F> {
         self.interior_clearance = tetrahedron.interior_clearance;
         self.error = tetrahedron.error;
         self.ulp = tetrahedron.error / PLANE_ERROR_ULPS;
-        (self.cancelled, self.key_error) = if is_exact {
+        (self.min_n2, self.key_error) = if is_exact {
             (f64::INFINITY, 0.0)
         } else {
             (MIN_INTERPOLATED_N2, KEY_ERROR_REL)
         };
     }
 
-    /// Returns whether the interior point is below all planes for certain, so that the surface winds around
-    /// it; `false` for NaN.
+    /// Returns whether the interior point is below all planes by at least the error, so that the surface winds around it;
+    /// `false` for NaN.
     #[inline(always)]
     pub fn encloses_interior_point(&self) -> bool {
         self.interior_clearance >= self.error
     }
 
-    /// Returns what a face at this distance may be farther away than the closest, metres, because their
-    /// keys tie.
+    /// Returns by how much the face with the least key may be farther than the closest face, metres, if its distance is
+    /// `distance`.
     #[inline(always)]
     pub fn key_error(&self, distance: f64) -> f64 {
         self.key_error * distance
@@ -286,12 +292,12 @@ impl<const F: usize> EpaPolytope<F> {
 
     /// Returns the proven lower bound of the distance from the origin to all faces, metres.
     pub fn lower_bound(&self, closest: &ClosestFace) -> f64 {
-        let most = closest.key + 4.0 * KEY_ERROR_REL * closest.key.abs();
-        let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= most);
+        let max_key = closest.key + 4.0 * KEY_ERROR_REL * closest.key.abs();
+        let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= max_key);
         tied.fold(f64::INFINITY, |least, f| lesser(self.distance(f), least))
     }
 
-    /// Takes all faces out of use.
+    /// Frees all faces.
     #[inline(always)]
     fn clear(&mut self) {
         self.keys.fill(f64::INFINITY);
@@ -300,7 +306,7 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Returns the closest face: one sweep over the keys, whose low bits hold the index.
+    /// Returns the closest face, by one sweep over the keys.
     #[inline(always)]
     pub fn closest_face(&self) -> ClosestFace {
         let mut least = [f64::INFINITY; 8];
@@ -320,16 +326,16 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Returns whether a face is closer than this key, where tolerances are finer than keys tell. Such a
-    /// face gets a key that says so.
+    /// Recomputes the keys if planes are exact, since the tolerance is then finer than the error of keys. Returns whether
+    /// a face is closer than `key`; its key is lowered accordingly.
     #[inline(always)]
     pub fn refresh_keys(&mut self, key: f64) -> bool {
-        !(self.key_error > 0.0) && self.sharpen_keys(key)
+        !(self.key_error > 0.0) && self.recompute_keys(key)
     }
 
     #[cold]
     #[inline(never)]
-    fn sharpen_keys(&mut self, key: f64) -> bool {
+    fn recompute_keys(&mut self, key: f64) -> bool {
         let mut refresh_keys = false;
         for f in 0..self.used.min(F) {
             let (square, _) = self.plane(f).signed_square();
@@ -341,12 +347,12 @@ impl<const F: usize> EpaPolytope<F> {
         refresh_keys
     }
 
-    /// Makes a point the corner with index `id`. `first` is a face that it is above by more than
-    /// `level`, metres; `corner` returns the points by their indices. `false`: there is no room for its
-    /// faces, and nothing has changed.
+    /// Inserts the point `p` as the corner with index `id`. `first`: a face that p is above by more than `level`, metres.
+    /// `corner` returns the point of an index. Returns `false` if there is no room for the new faces; the polytope is
+    /// then unchanged.
     ///
-    /// Where the visible faces are no disc, the height that makes a face visible is raised eightfold, and again,
-    /// until `first` alone is left.
+    /// As long as the horizon is not a single closed loop, the height above which a face counts as visible is multiplied
+    /// by eight, until only `first` is visible.
     #[inline(always)]
     pub fn insert(
         &mut self,
@@ -357,7 +363,7 @@ impl<const F: usize> EpaPolytope<F> {
         corner: &impl Fn(usize) -> Vec3,
     ) -> bool {
         let mut above = level;
-        // Terminates: `first` alone is a disc.
+        // Terminates: the horizon of only `first` is closed.
         loop {
             match self.walk_visible(first, id, p, above, corner) {
                 Insertion::HorizonNotSimple if above < f64::INFINITY => {
@@ -373,8 +379,10 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Walks through the visible faces depth first, which meets the edges of the horizon in their cyclic
-    /// order: each new face is made and linked at once.
+    /// Inserts a point by a depth-first walk over the visible faces. The walk meets the edges of the horizon in their
+    /// cyclic order, so that each new face is made and linked at once.
+    ///
+    /// One loop over the stack, the list of visible faces and the fan; a split would pass all of them.
     #[inline(always)]
     fn walk_visible(
         &mut self,
@@ -384,11 +392,11 @@ impl<const F: usize> EpaPolytope<F> {
         level: f64,
         corner: &impl Fn(usize) -> Vec3,
     ) -> Insertion {
-        let lifted = Plane::point(p);
+        let point = Plane::point(p);
         let mut tail = first;
         self.keys[Self::in_range(first)] = f64::INFINITY;
         let mut edge = 4 * first;
-        // The top of the stack of half-edges to go on from: its face holds the one below.
+        // The top of the stack of half-edges from which the walk continues; its face stores the one below.
         let mut top = edge + 1;
         self.twins[Self::in_range(first)][3] = edge as u16 + 2;
         let mut free = self.free;
@@ -397,14 +405,14 @@ impl<const F: usize> EpaPolytope<F> {
         let mut met_again = false;
         loop {
             let twin = self.twin(edge);
-            let hidden = self.plane(twin >> 2);
-            if hidden.height(&lifted) > level {
-                let beyond = Self::in_range(twin >> 2);
-                if self.keys[beyond] != f64::INFINITY {
-                    self.keys[beyond] = f64::INFINITY;
-                    self.next[Self::in_range(tail)] = beyond as u16;
-                    tail = beyond;
-                    self.twins[beyond][3] = top as u16;
+            let neighbour = self.plane(twin >> 2);
+            if neighbour.height(&point) > level {
+                let face = Self::in_range(twin >> 2);
+                if self.keys[face] != f64::INFINITY {
+                    self.keys[face] = f64::INFINITY;
+                    self.next[Self::in_range(tail)] = face as u16;
+                    tail = face;
+                    self.twins[face][3] = top as u16;
                     top = Self::step(twin, &PREVIOUS);
                     edge = Self::step(twin, &NEXT);
                     continue;
@@ -415,7 +423,7 @@ impl<const F: usize> EpaPolytope<F> {
                     self.revert(first, tail, free);
                     return Insertion::NoRoom;
                 }
-                self.add_face(free, edge, [hidden, lifted], id, corner);
+                self.add_face(free, edge, [neighbour, point], id, corner);
                 let (f, new) = (Self::in_range(free), 4 * free);
                 self.twins[f][2] = (previous | 1) as u16;
                 self.set_twin(twin, new);
@@ -430,7 +438,7 @@ impl<const F: usize> EpaPolytope<F> {
             let below = &mut self.twins[Self::in_range(edge >> 2)][3];
             top = usize::from(core::mem::replace(below, STACK_BOTTOM));
         }
-        // Also where no face was hidden.
+        // The first case: no face was hidden.
         if begin == 4 * free || met_again && !self.is_horizon_closed(begin, previous) {
             self.revert(first, tail, free);
             return Insertion::HorizonNotSimple;
@@ -440,14 +448,14 @@ impl<const F: usize> EpaPolytope<F> {
         self.used = self.used.max(free.min(F));
         self.next[Self::in_range(tail)] = free as u16;
         self.free = first;
-        if self.cancelled < f64::INFINITY {
+        if self.min_n2 < f64::INFINITY {
             self.error += INSERTION_ERROR_ULPS * self.ulp;
         }
         Insertion::Done
     }
 
-    /// Makes face `f` over a horizon edge and a new point, see the head of this file. `edge`: the half-edge
-    /// of the visible face.
+    /// Makes face `f` from a horizon edge and a new point, by interpolation. `edge`: the half-edge of the visible face.
+    /// The planes: that of the hidden face, and the point.
     #[inline(always)]
     fn add_face(
         &mut self,
@@ -466,7 +474,7 @@ impl<const F: usize> EpaPolytope<F> {
         self.corners[f] = ends | (id as u64) << 32 | (ends & 0xffff) << 48;
         self.planes[f] = plane.array();
         let (mut square, n2) = plane.signed_square();
-        if !(n2 >= self.cancelled) {
+        if !(n2 >= self.min_n2) {
             square = self.recompute_plane(f, edge >> 2, corner);
         }
         self.keys[f] = Self::key(f, square);
@@ -474,8 +482,8 @@ impl<const F: usize> EpaPolytope<F> {
         self.twins[f][3] = edge as u16;
     }
 
-    /// Returns whether the edges of a fan follow each other, and close. From its first half-edge to its
-    /// last; the two are not linked yet.
+    /// Returns whether the edges of a fan, from its first half-edge to its last one, are a closed loop. The first and the
+    /// last face are not linked yet.
     #[cold]
     #[inline(never)]
     fn is_horizon_closed(&self, begin: usize, last: usize) -> bool {
@@ -483,22 +491,22 @@ impl<const F: usize> EpaPolytope<F> {
             let [from, to, _] = self.corners(h >> 2);
             (from, to)
         };
-        let mut at = begin;
-        // Each face once.
+        let mut current = begin;
+        // Bounded: a fan has at most F faces.
         for _ in 0..F {
-            if at == last {
+            if current == last {
                 break;
             }
-            let next = self.twin(at | 1) & !3;
-            if ends(at).1 != ends(next).0 {
+            let next = self.twin(current | 1) & !3;
+            if ends(current).1 != ends(next).0 {
                 return false;
             }
-            at = next;
+            current = next;
         }
         ends(last).1 == ends(begin).0
     }
 
-    /// Takes back a fan that was begun, up to the face `free`: twins as they were, and the visible faces,
+    /// Reverts an insertion: frees the new faces, up to the face `free`, restores the twins, and puts the visible faces,
     /// from `first` to `tail`, in use again.
     #[cold]
     #[inline(never)]
@@ -521,19 +529,19 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Computes the plane of face `f` from its corners, unit normal, with d the least N·corner; takes it
-    /// where it inherits what the bound needs, see above. `parent` is the face it was interpolated from.
-    /// Returns the signed square distance.
+    /// Computes the plane of face `f` from its corners, with unit normal and d the least N·corner, and stores it if it has
+    /// the properties that the bound needs; else repairs the interpolated plane (*Cancelled normals* at the head of this
+    /// file). `parent`: the visible face from which the plane was interpolated. Returns the signed squared distance.
     #[cold]
     #[inline(never)]
     fn recompute_plane(&mut self, f: usize, parent: usize, corner: &impl Fn(usize) -> Vec3) -> f64 {
         let f = Self::in_range(f);
         let (old, parent) = (self.plane(f), self.plane(parent));
         let (square, n2) = old.signed_square();
-        // Of a vanished plane neither side nor sign is known: its parent's sign counts.
+        // The side and the sign of d are unknown for an unusable plane: the parent's sign is used.
         let is_side_known = n2 > MIN_USABLE_N2;
-        let ancestor = if is_side_known { &old } else { &parent };
-        let plane = match self.plane_through_corners(f, ancestor, is_side_known, corner) {
+        let reference = if is_side_known { &old } else { &parent };
+        let plane = match self.plane_through_corners(f, reference, is_side_known, corner) {
             Some((plane, interior_clearance)) => {
                 self.interior_clearance = lesser(interior_clearance, self.interior_clearance);
                 plane
@@ -554,9 +562,9 @@ impl<const F: usize> EpaPolytope<F> {
         plane.signed_square().0
     }
 
-    /// Returns the plane through a face's corners and the distance of the interior point below it, metres,
-    /// if the face has an area and the plane inherits from `old` what the bound needs: the interior point
-    /// below it, the origin if that was so, and the side if that is known.
+    /// Returns the plane through a face's corners and the distance of the interior point below it, metres. `None` if the
+    /// face has no area above rounding, if the interior point is not below the plane, if the origin is not below the
+    /// plane although it is below `old`, or if the normal is not on the side of `old`'s and that side is known.
     fn plane_through_corners(
         &self,
         f: usize,
@@ -575,10 +583,10 @@ impl<const F: usize> EpaPolytope<F> {
         let n = n / n2.sqrt();
         let d = lesser(lesser(n.dot(&a), n.dot(&b)), n.dot(&p));
         let interior_clearance = d - n.dot(&self.interior);
-        let inherits = (!is_side_known || n.dot(&old.normal()) > 0.0)
+        let is_valid = (!is_side_known || n.dot(&old.normal()) > 0.0)
             && interior_clearance >= larger(PLANE_ERROR_ULPS * self.ulp, self.error)
             && (d > 0.0 || !(old.offset() > 0.0));
-        inherits.then(|| (Plane::new(&n, d), interior_clearance))
+        is_valid.then(|| (Plane::new(&n, d), interior_clearance))
     }
 }
 
@@ -597,11 +605,11 @@ mod tests {
 
     const F: usize = 1024;
     const EPSILON: f64 = f64::EPSILON;
-    /// A point is above a unit polytope by more than this.
+    /// The height above which a point counts as above a face of a polytope of size 1.
     const LEVEL: f64 = 8.0 * EPSILON as f64;
 
-    /// Asserts the invariants: a closed surface, all planes at or below their corners and above the
-    /// interior point.
+    /// Asserts the invariants: the surface is closed, and all planes are below or at their corners and above the interior
+    /// point.
     pub fn check<const F: usize>(hull: &EpaPolytope<F>, points: &[Vec3]) {
         let mut edges = 0;
         for f in hull.faces() {
@@ -626,7 +634,7 @@ mod tests {
         assert_eq!(edges % 2, 0);
     }
 
-    /// Returns the face that a point is farthest above, if by more than `rounding`, metres.
+    /// Returns the face with the greatest height of a point above it; `None` if that is at most `rounding`, metres.
     fn farthest_below<const F: usize>(
         hull: &EpaPolytope<F>,
         p: &Plane,
@@ -642,8 +650,8 @@ mod tests {
         best.0
     }
 
-    /// Returns the polytope of the points in their order; the first four are the tetrahedron.
-    fn grown(points: &[Vec3], exact: bool) -> Option<Box<EpaPolytope<F>>> {
+    /// Returns the polytope of the points, inserted in their order; the first four are the tetrahedron.
+    fn insert_all(points: &[Vec3], exact: bool) -> Option<Box<EpaPolytope<F>>> {
         let mut hull = Box::new(EpaPolytope::<F>::BLANK);
         let size = points.iter().fold(0.0, |m: f64, p| m.max(p.norm()));
         let rounding = LEVEL * size;
@@ -695,7 +703,7 @@ mod tests {
         let mut r = Random::new(1);
         for round in 0..200 {
             let points: Vec<_> = (0..14).map(|_| r.vector(1.0)).collect();
-            let Some(hull) = grown(&points, round % 2 == 0) else {
+            let Some(hull) = insert_all(&points, round % 2 == 0) else {
                 continue;
             };
             let (found, exact) = (closest(&hull), exact_distance(&points));
@@ -703,8 +711,8 @@ mod tests {
         }
     }
 
-    /// Ties, coplanar and collinear points, points twice: the bound holds, and is the
-    /// distance to the level at which points count as on a face.
+    /// Equal, coplanar and collinear points: the bound is sound, and exact up to the height at which
+    /// points count as on a face.
     #[test]
     fn hulls_of_grid_points_are_bounded() {
         let mut r = Random::new(2);
@@ -712,7 +720,7 @@ mod tests {
             let steps = [2.0, 3.0, 4.0][round % 3];
             let mut grid = || (r.within(0.0, steps + 1.0).floor() - 0.5 * steps) / steps;
             let points: Vec<_> = (0..16).map(|_| Vec3::new(grid(), grid(), grid())).collect();
-            let Some(hull) = grown(&points, round % 2 == 0) else {
+            let Some(hull) = insert_all(&points, round % 2 == 0) else {
                 continue;
             };
             let (found, exact) = (closest(&hull), exact_distance(&points));
@@ -724,14 +732,14 @@ mod tests {
         }
     }
 
-    /// The middle of two support points as the first corner, and both of them after it.
+    /// The first corner is the middle of two later corners.
     #[test]
     fn an_apex_on_a_segment() {
         let mut r = Random::new(3);
         for round in 0..2000 {
             let mut points: Vec<_> = (0..12).map(|_| r.vector(1.0)).collect();
             points[0] = (points[1] + points[4]) * 0.5;
-            let Some(hull) = grown(&points, round % 2 == 0) else {
+            let Some(hull) = insert_all(&points, round % 2 == 0) else {
                 continue;
             };
             let (found, exact) = (closest(&hull), exact_distance(&points[1..]));
@@ -743,7 +751,7 @@ mod tests {
         }
     }
 
-    /// Spheres of points and flat discs: slivers, thin wedges, many faces.
+    /// Points on spheres and flat ellipsoids: slivers, thin wedges, many faces.
     #[test]
     fn thin_and_round_hulls_keep_the_invariant() {
         let mut r = Random::new(4);
@@ -753,14 +761,14 @@ mod tests {
                 for p in &mut points {
                     p.z *= thin as f64;
                 }
-                grown(&points, round % 2 == 0);
+                insert_all(&points, round % 2 == 0);
             }
         }
     }
 
-    /// A polytope without room refuses a point and has not changed.
+    /// A polytope without room returns `false` and does not change.
     #[test]
-    fn a_full_polytope_is_left_whole() {
+    fn a_full_polytope_does_not_change() {
         let mut r = Random::new(5);
         let points = r.points(60, 1.0);
         let mut small = EpaPolytope::<32>::BLANK;
