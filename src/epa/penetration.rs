@@ -101,7 +101,7 @@ const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
 /// stability` in single precision, `campaigns -- wide` at tolerance 0): if all known corners are accepted, or none, more
 /// proofs end at the support limit.
 const KNOWN_EXTENT_REL: f64 = 1e-3;
-/// The number of iterations above which D counts as curved at the minimum ([`WarmKind::Round`]).
+/// The number of iterations above which D counts as curved at the minimum ([`WarmKind::CurvedOverlap`]).
 const MAX_POLYTOPE_ITERATIONS: u64 = 3;
 
 /// Buffers for the largest polytopes. All bytes zero is a valid value.
