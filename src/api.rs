@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The Rust interface: the queries of `ccd/warm.h` and `ccd/paper.h`, under the same names, for
-//! shapes that are closures or types of the caller's. Re-exported at the head of the crate.
+//! shapes that are closures or types of the caller. Re-exported by the crate root.
 //!
-//! Departures from C: results are [`Option`]s and invalid arguments [`Error`]s in place of codes; a
-//! panic of a shape unwinds through the query, which leaves the state unchanged and frees memory.
+//! Departures from C: a query returns an [`Option`] instead of a code, and an [`Error`] for invalid
+//! arguments. If a shape panics, the panic propagates; the state stays unchanged and memory is freed.
 
 use core::fmt;
 
 use crate::contact;
 use crate::contact::manifold;
 use crate::contact::manifold_cache;
-use crate::ffi::arena::Heap;
+use crate::ffi::arena::OwnedBuffers;
 use crate::ffi::warm::NAME;
 use crate::gjk::signed_distance::Wanted;
 pub use crate::math::Real;
@@ -42,8 +42,8 @@ pub trait Shape {
     /// Returns a point of the shape farthest along `dir` (unit, finite), metres.
     fn support(&self, dir: [Real; 3]) -> [Real; 3];
 
-    /// Returns a center: a point inside the shape, the deeper the better, metres. Where both shapes
-    /// of a pair have one, it saves calls of [`Shape::support`]. It must lie in the shape.
+    /// Returns a center: a point inside the shape, metres, as deep as possible. If both shapes of a
+    /// pair have one, queries need fewer calls of [`Shape::support`]. It must lie in the shape.
     fn center(&self) -> Option<[Real; 3]> {
         None
     }
@@ -95,8 +95,8 @@ impl From<Fault> for Error {
     }
 }
 
-/// Converts a length that is neither negative nor NaN; else returns the error `cause`.
-fn length(value: Real, cause: &'static str) -> Result<f64, Error> {
+/// Converts a length; returns the error `cause` if it is negative or NaN.
+fn validate_length(value: Real, cause: &'static str) -> Result<f64, Error> {
     if value >= 0.0 {
         Ok(value.into())
     } else {
@@ -104,19 +104,23 @@ fn length(value: Real, cause: &'static str) -> Result<f64, Error> {
     }
 }
 
-/// Normalises a direction.
-fn direction(dir: [Real; 3]) -> Result<Vec3, Error> {
+/// Returns a direction as a unit vector.
+///
+/// # Errors
+/// A direction that is zero or not finite.
+fn validate_direction(dir: [Real; 3]) -> Result<Vec3, Error> {
     unit(&from_real(dir)).ok_or(Error::BadInput("a direction is zero or not finite"))
 }
 
-/// The results requested besides depth, bounds and directions. A result that is not requested is
-/// zero and costs no support point.
+/// The requested results, besides depth, bounds and directions. A result that is not requested is
+/// zero and costs no support points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Want {
-    /// The contact position: costs 2 to 4 support points, at most 8 where a face has more than four
-    /// corners, none where a state shows that nothing has moved. Evaluates the shapes separately.
+    /// True to request the contact position. It costs 2 to 4 support points, at most 8 for a face of
+    /// more than four corners, none if a state shows that nothing has moved. Evaluates the shapes
+    /// separately.
     pub pos: bool,
-    /// The witness points, at no cost.
+    /// True to request the witness points, at no cost.
     pub points: bool,
 }
 
@@ -143,10 +147,12 @@ impl Default for Want {
 /// Tolerance, iteration limit and requested results of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Largest error of the depth or distance, metres, not negative; floored at a few ulps of the
-    /// shapes' size, so 0 requests the best result of the precision.
+    /// Largest error of the depth or distance, metres, not negative. It is raised to a few units in
+    /// the last place of the coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size
+    /// of the Minkowski difference.
     pub tolerance: Real,
-    /// Limit on the iterations; the library has one of its own.
+    /// Limit on the support points of a query after its first tetrahedron, all stages together. The
+    /// library's own limit is 380, and no query takes more than 400 support points.
     pub max_iterations: u64,
     /// The requested results.
     pub want: Want,
@@ -162,9 +168,12 @@ impl Settings {
     }
 
     /// Converts the settings to those of the solvers.
-    fn checked(&self) -> Result<contact::Settings, Error> {
+    ///
+    /// # Errors
+    /// A tolerance that is negative or NaN.
+    fn to_solver_settings(&self) -> Result<contact::Settings, Error> {
         Ok(contact::Settings {
-            tolerance: length(self.tolerance, "the tolerance is negative or NaN")?,
+            tolerance: validate_length(self.tolerance, "the tolerance is negative or NaN")?,
             max_iterations: ITERATION_CAP.min(self.max_iterations),
         })
     }
@@ -181,7 +190,7 @@ impl Default for Settings {
     }
 }
 
-/// State of one pair between queries: a plain value; the default is cold.
+/// Warm start state of one pair, kept between queries: a plain value. The default is cold.
 ///
 /// A state belongs to one pair in one order. A stale, foreign or random state may cost time and may
 /// lead [`penetration_local`] to another local minimum; every result stays sound.
@@ -190,7 +199,7 @@ pub struct Warm(WarmStart);
 
 impl Warm {
     /// Returns a new state that starts from `dir`, a guess of the penetration direction, of any
-    /// length; a cold one where `dir` is zero or not finite.
+    /// length; a cold state if `dir` is zero or not finite.
     pub fn guess(dir: [Real; 3]) -> Self {
         Warm(WarmStart::guess(&from_real(dir)))
     }
@@ -201,31 +210,34 @@ impl Warm {
     }
 }
 
-/// Contact manifold of one pair between calls of [`contacts`], in either order: a plain value; the
-/// default is cold. A stale, foreign or random one costs time alone.
+/// Warm-start data of [`contacts`] for one pair, in either order: a plain value. The default is
+/// empty. Stale or random contents only cost time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ManifoldCache(manifold_cache::ManifoldCache);
 
-/// Result of a penetration query: an overlap.
+/// Result of a penetration query: an overlap. A depth is sound if moving the second shape by
+/// `depth * dir` separates the two; it may exceed the least depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Penetration {
     /// Penetration depth, metres, >= 0: moving the second shape by `depth * dir` separates the two.
     pub depth: Real,
-    /// Proven lower bound of the globally least depth (in [`penetration_along`]: of the depth along
-    /// its direction), metres; 0 where none was proven.
+    /// Lower bound of the globally least depth (in [`penetration_along`]: of the depth along its
+    /// direction), metres; 0 if there is none. Proven if the centers lie in their shapes;
+    /// [`penetration_proven`] does not rely on them.
     pub depth_lower: Real,
     /// Penetration direction, unit: the second shape moves along it.
     pub dir: [Real; 3],
     /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in
     /// [`penetration_along`].
     pub normal: [Real; 3],
-    /// Contact position, [`Want::pos`]: the center of pressure, which is the centroid of the common
-    /// volume except for its coordinate along `normal`. Continuous in the pose. Where `limit` is set,
-    /// in [`penetration_along`] and [`penetration_planar`], the middle of the witness points.
+    /// Contact position, [`Want::pos`]: the center of pressure, an estimate of the centroid of the
+    /// overlap volume, projected along `normal` to the plane midway between the two support planes.
+    /// Continuous in the pose. If `limit`, and in [`penetration_along`] and [`penetration_planar`],
+    /// the middle of the witness points.
     pub pos: [Real; 3],
     /// Witness point of the first shape, [`Want::points`]: in the shape and on its support plane,
-    /// within the error of the depth or 1e-12 of the size (1e-5 in single precision).
+    /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).
     pub point1: [Real; 3],
     /// Witness point of the second shape, [`Want::points`]: as `point1`.
     pub point2: [Real; 3],
@@ -234,24 +246,24 @@ pub struct Penetration {
     pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
-    /// The result is sound, but less exact than requested: `max_iterations`, the library's limit of
-    /// support points or rounding ended the search.
+    /// True if the result is sound, but less exact than requested: `max_iterations`, the library's
+    /// limit of support points or rounding ended the search.
     pub limit: bool,
 }
 
-/// Margins and range of [`signed_distance`].
+/// Margins and largest distance of [`signed_distance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DistanceOptions {
-    /// Radius of a ball added all around the first shape, metres, not negative.
+    /// Radius of a ball added to the first shape, metres, not negative.
     pub margin1: Real,
-    /// Radius of a ball added all around the second shape, metres, not negative.
+    /// Radius of a ball added to the second shape, metres, not negative.
     pub margin2: Real,
-    /// Distance, metres, not negative, beyond which the search ends.
+    /// The search ends when the distance is proven to be greater than this, metres, not negative.
     pub max_distance: Real,
 }
 
 impl Default for DistanceOptions {
-    /// Returns no margins and an unlimited distance.
+    /// Returns options without margins and without a largest distance.
     fn default() -> Self {
         DistanceOptions {
             margin1: 0.0,
@@ -266,7 +278,7 @@ impl Default for DistanceOptions {
 #[non_exhaustive]
 pub struct Distance {
     /// Proven lower bound of the signed distance, metres: the gap along `normal`, or minus the depth
-    /// where the shapes overlap.
+    /// if the shapes overlap.
     pub distance: Real,
     /// Proven upper bound of the signed distance, metres; at most the tolerance above `distance`
     /// unless `limit` is set or `distance` is above `max_distance`.
@@ -282,25 +294,26 @@ pub struct Distance {
     pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
-    /// The bounds have not met: `max_iterations`, the library's limit of support points or rounding
-    /// ended the search.
+    /// True if the gap between the bounds exceeds the tolerance: `max_iterations`, the library's limit
+    /// of support points or rounding ended the search.
     pub limit: bool,
 }
 
 /// One point of a contact manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
-    /// Within the slop of the surface of the first shape.
+    /// Point within the slop of the surface of the first shape.
     pub point1: [Real; 3],
-    /// `point1 - depth * normal`; within the slop of the surface of the second shape.
+    /// `point1 - depth * normal`, a point within the slop of the surface of the second shape. If the
+    /// faces do not overlap in projection, the closest point of the second shape's face instead.
     pub point2: [Real; 3],
-    /// Metres; negative where the shapes are apart.
+    /// Depth at the contact, metres; negative if the shapes are apart there.
     pub depth: Real,
-    /// Contact id, not 0, constant while the contact moves with either shape; 0 without a cache.
+    /// Contact id: the same while the contact moves with either shape, never 0; 0 without a cache.
     pub id: u32,
 }
 
-/// Adapts a caller's shape to the solvers.
+/// A caller's shape as a support function of the solvers.
 struct SupportOf<'a, S: ?Sized>(&'a S);
 
 impl<S: Shape + ?Sized> SupportMap for SupportOf<'_, S> {
@@ -312,8 +325,11 @@ impl<S: Shape + ?Sized> SupportMap for SupportOf<'_, S> {
 
 type ShapePair<'a, A, B> = Pair<SupportOf<'a, A>, SupportOf<'a, B>>;
 
-/// Makes the pair of two shapes. `has_state`: the caller keeps a state.
-fn pair<'a, A, B>(a: &'a A, b: &'a B, has_state: bool) -> Result<ShapePair<'a, A, B>, Error>
+/// Makes the pair of two shapes. `has_state`: true if the caller keeps a state.
+///
+/// # Errors
+/// A center that is not finite.
+fn make_pair<'a, A, B>(a: &'a A, b: &'a B, has_state: bool) -> Result<ShapePair<'a, A, B>, Error>
 where
     A: Shape + ?Sized,
     B: Shape + ?Sized,
@@ -336,8 +352,8 @@ where
     })
 }
 
-/// Runs `solve` with the state of `warm`, or a cold one, and stores the new state. A fault leaves
-/// the state unchanged.
+/// Runs `solve` with the state of `warm`, or a cold one without it, and stores the new state. A fault
+/// leaves the state unchanged.
 fn with_state<R>(
     warm: Option<&mut Warm>,
     solve: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
@@ -350,7 +366,7 @@ fn with_state<R>(
     Ok(result)
 }
 
-/// Runs a penetration solver. Its flag requests the contact position.
+/// Runs a penetration query. The flag passed to `solve` requests the contact position.
 fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
@@ -364,12 +380,12 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
         &mut contact::Penetration,
     ) -> Result<(), Stop>,
 ) -> Result<Option<Penetration>, Error> {
-    let checked = settings.checked()?;
+    let solver_settings = settings.to_solver_settings()?;
     let want = settings.want;
-    let pair = pair(a, b, warm.is_some())?;
+    let pair = make_pair(a, b, warm.is_some())?;
     let mut hit = contact::Penetration::default();
     let found = with_state(warm, |state| {
-        if_overlapping(solve(&pair, state, &checked, want.pos, &mut hit))
+        if_overlapping(solve(&pair, state, &solver_settings, want.pos, &mut hit))
     })?;
     let point_if = |wanted: bool, point: Vec3| if wanted { to_real(&point) } else { [0.0; 3] };
     Ok(found.map(|()| Penetration {
@@ -397,7 +413,7 @@ macro_rules! query {
             settings: &Settings,
             warm: Option<&mut Warm>,
         ) -> Result<Option<Penetration>, Error> {
-            $(let $dir = direction($dir)?;)?
+            $(let $dir = validate_direction($dir)?;)?
             penetration_query(a, b, settings, warm, $solve)
         }
     };
@@ -405,13 +421,15 @@ macro_rules! query {
 
 query!(
     /// Computes the penetration depth: the least distance by which the second shape must move to
-    /// separate the two, within the larger of the tolerance and 0.1 % of the depth; a sound upper bound
-    /// where [`Penetration::limit`] is set. The default call.
+    /// separate the two. The default call.
+    ///
+    /// The depth exceeds the least depth by at most the tolerance or 0.1 % of the depth, the larger of
+    /// the two; with [`Penetration::limit`] it is a sound upper bound.
     ///
     /// With a state, a pair that stays apart costs one support point, and an overlap fewer than a cold
     /// start. The depth and `depth_lower` rely on the centers. Allocates nothing.
     ///
-    /// Returns `None` for shapes that are apart or touch within rounding.
+    /// Returns `None` if the shapes are apart or touch within rounding.
     ///
     /// ```
     /// use ccd::{Real, Settings, Warm};
@@ -438,7 +456,7 @@ query!(
     |pair, state, settings, wants, hit| pair.penetration(state, settings, wants, hit)
 );
 
-/// Reports whether the shapes overlap; a touch within rounding is no overlap.
+/// Reports whether the shapes overlap; shapes that touch within rounding do not.
 ///
 /// With a state, a pair costs one support point while its last separating axis still separates.
 /// Relies on the centers. Allocates nothing.
@@ -459,7 +477,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
-    let pair = pair(a, b, warm.is_some())?;
+    let pair = make_pair(a, b, warm.is_some())?;
     let overlap = match warm {
         None => if_overlapping(pair.intersect(None))?,
         warm => with_state(warm, |state| if_overlapping(pair.intersect(Some(state))))?,
@@ -468,11 +486,12 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
 }
 
 /// Computes the signed distance: the gap of shapes that are apart, minus the penetration depth of
-/// shapes that overlap; continuous through the touch, with both bounds proven.
+/// shapes that overlap; continuous at contact, with both bounds proven.
 ///
-/// Margins are balls added all around the shapes, exactly: a ball is a point with a margin, a
-/// capsule a segment. Does not rely on the centers. Allocates only where the shapes without their
-/// margins overlap and the minima (nearly) form a curve or a surface.
+/// A margin is a ball added to a shape; the result is exact for it. So a ball is a point with a
+/// margin, a capsule a segment with a margin. Does not rely on the centers. Allocates only if the
+/// shapes without their margins overlap and their least depth is (nearly) not unique, as for
+/// concentric balls.
 ///
 /// ```
 /// use ccd::{DistanceOptions, Real, Settings};
@@ -496,18 +515,18 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
 ) -> Result<Distance, Error> {
     let margins = "a margin is negative, NaN or not finite";
     let wanted = Wanted {
-        margin1: length(options.margin1, margins)?,
-        margin2: length(options.margin2, margins)?,
-        max_distance: length(options.max_distance, "max_distance is negative or NaN")?,
-        settings: settings.checked()?,
+        margin1: validate_length(options.margin1, margins)?,
+        margin2: validate_length(options.margin2, margins)?,
+        max_distance: validate_length(options.max_distance, "max_distance is negative or NaN")?,
+        settings: settings.to_solver_settings()?,
     };
     if !(wanted.margin1 + wanted.margin2 < f64::from(Real::MAX)) {
         return Err(Error::BadInput(margins));
     }
     let points = settings.want.points;
-    let pair = pair(a, b, warm.is_some())?;
+    let pair = make_pair(a, b, warm.is_some())?;
     let minimum = |pair: &ShapePair<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
-        pair.proven(state, settings, &mut Heap::default(), false, hit)
+        pair.proven(state, settings, &mut OwnedBuffers::default(), false, hit)
     };
     let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;
     let point_if_wanted = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
@@ -523,16 +542,19 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     })
 }
 
-/// Computes the contact manifold of two shapes: the region in which their faces along `normal` lie
-/// over each other, reduced to the contacts that are returned, which are stored in `room`: the
-/// deepest first, the others in order around the normal, spread to the largest area. At least one.
+/// Computes the contact manifold: the overlap of the two faces along `normal`, projected along it
+/// and reduced to at most `room.len()` contacts, the deepest first, the others in order around the
+/// normal, chosen for the largest area. Stores the contacts in `room` and returns them, at least one.
 ///
-/// `normal`: of an answer for this pose (`dir` where there is no other), of any length. `slop`,
-/// metres: how far below its support plane a corner may lie and still belong to the face; a
-/// thousandth of the shapes' size is good for contacts that rest. It is at least 1 % of the depth
-/// along `normal`, which a normal that is good to 0.1 % of the depth needs, and 32 ulps of the
-/// largest coordinate. With a cache a shape whose face is that of the last call takes half the
-/// support points. Allocates nothing.
+/// `normal`: of a result for this pose, of any length. `slop`, metres: largest distance of a corner
+/// below its support plane at which it still belongs to the face; a thousandth of the shapes' size
+/// is good for resting contacts. If `normal` is off by an angle, the slop must be at least that
+/// angle times the extent of the face, or only an edge or a corner is found. For normals of this
+/// library 1 % of the depth is enough. The slop is therefore raised to 1 % of the depth along
+/// `normal` and to 32 ulps of the largest coordinate.
+///
+/// With a cache, a shape whose face is that of the last call takes half the support calls, and
+/// contacts keep their ids. Allocates nothing.
 ///
 /// ```
 /// use ccd::{Contact, Real};
@@ -559,8 +581,8 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     cache: Option<&mut ManifoldCache>,
     room: &'r mut [Contact],
 ) -> Result<&'r [Contact], Error> {
-    let normal = direction(normal)?;
-    let slop = length(slop, "the slop is negative or NaN")?;
+    let normal = validate_direction(normal)?;
+    let slop = validate_length(slop, "the slop is negative or NaN")?;
     if room.is_empty() {
         return Err(Error::BadInput("no room for a contact"));
     }
@@ -581,9 +603,10 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
 }
 
 query!(
-    /// Computes a local minimum of the depth by a walk on known vertices. Faster than [`penetration`]
-    /// from a state or a guess that is roughly right ([`Warm::guess`]); from a distant one it may find
-    /// another minimum. Where the walk finds none, the global search follows. Allocates nothing.
+    /// Computes a local minimum of the depth by a local search from the state's direction. Faster than
+    /// [`penetration`] if that direction is roughly right ([`Warm::guess`]); from a distant one it may
+    /// find another minimum. If the search does not converge, the search of [`penetration`] follows.
+    /// Allocates nothing.
     ///
     /// # Errors
     /// As [`penetration`].
@@ -595,7 +618,8 @@ query!(
     /// Computes the globally least depth with a certificate: `depth - depth_lower` is within the
     /// tolerance unless [`Penetration::limit`] is set. Does not rely on the centers.
     ///
-    /// Allocates, by C's calloc, only where the minima (nearly) form a curve or a surface.
+    /// Allocates, by C's calloc, only if the minimum is (nearly) not unique, as for coaxial cylinders
+    /// and concentric balls; the bounds may then not meet, and [`Penetration::limit`] is set.
     ///
     /// ```
     /// use ccd::{Real, Settings};
@@ -610,7 +634,7 @@ query!(
     /// # Errors
     /// As [`penetration`]; a failed allocation.
     penetration_proven,
-    |pair, state, settings, wants, hit| pair.proven(state, settings, &mut Heap::default(), wants, hit)
+    |pair, state, settings, wants, hit| pair.proven(state, settings, &mut OwnedBuffers::default(), wants, hit)
 );
 
 query!(
@@ -635,7 +659,7 @@ query!(
 );
 
 query!(
-    /// Computes a local minimum of the depth by a paper's method as published, for comparisons: W. Gao,
+    /// Computes a local minimum of the depth by a published method, for comparisons: W. Gao,
     /// *Efficient Incremental Penetration Depth Estimation between Convex Geometries* (2023),
     /// Algorithms 4 and 5. The result is sound. Allocates nothing.
     ///

@@ -5,7 +5,9 @@
 //!
 //! # Safety contract
 //!
-//! States what C callers and this module guarantee. Each `unsafe` names the clauses that it uses.
+//! Guarantees of C callers and of this module. The comment of each `unsafe` names the clauses that it
+//! uses. In a function whose own contract names a clause, "the caller's guarantees are those of the
+//! callee" means that it calls another function of this module under the same clauses.
 //!
 //! - \[inputs\] An argument that is read points to a live, aligned, initialised object of
 //!   its C type, which only the callbacks change during the call. Object pointers are passed
@@ -24,7 +26,7 @@
 //!   alignment it has, and freed once, by its owner.
 //! - \[polytope\] A [`ccd_pt_t`](types::ccd_pt_t) was initialised by `ccdPtInit`, its lists
 //!   are circular, its links point to live elements, each element is a block of C's malloc, and
-//!   during a call only that call accesses it, through raw pointers alone.
+//!   during a call only that call accesses it, and only through raw pointers.
 
 #![allow(unsafe_code)]
 // The safety section of every function here is the contract above.

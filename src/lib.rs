@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Penetration and distance queries for convex shapes that are given by support functions: overlap,
-//! depth, direction, contact position; with warm starts from the last result.
+//! Penetration and distance queries for convex shapes given by support functions: overlap, depth,
+//! direction and contact position, with warm starts from the last result of a pair.
 //!
-//! The package is called `warmccd`, the crate `ccd`, since it is also a `libccd.so`.
+//! The package is called `warmccd`, the crate `ccd`, because it also builds `libccd.so`.
 //!
-//! A [`Shape`] is a support function: a closure that returns the shape's point farthest along a
-//! direction, or a type of the caller's. [`penetration`] is the default call. A [`Warm`] state for
-//! each pair, kept between frames, makes the next query cheap:
+//! A [`Shape`] has a support function, which returns a point of the shape farthest along a direction:
+//! a closure, or a type of the caller. [`penetration`] is the default call. With a [`Warm`] state for
+//! each pair, kept between frames, the next query of the pair takes fewer support calls:
 //!
 //! ```
 //! use ccd::{Real, Settings, Warm};
@@ -28,7 +28,7 @@
 //! | result | call |
 //! |---|---|
 //! | least depth, within the larger of the tolerance and 0.1 % | [`penetration`] |
-//! | overlap: yes or no | [`intersect`] |
+//! | whether the shapes overlap | [`intersect`] |
 //! | signed distance | [`signed_distance`] |
 //! | several contact points | [`contacts`] |
 //! | a local minimum of the depth, from a guess | [`penetration_local`] |
@@ -36,11 +36,11 @@
 //! | depth along a given direction | [`penetration_along`] |
 //! | depth of shapes in a common plane | [`penetration_planar`] |
 //! | depth by W. Gao's method as published | [`penetration_incremental`] |
-//! | faults of a shape's support function | [`check`] |
+//! | detected faults of a shape's support function and center | [`check`] |
 //!
-//! Lengths are metres. The names are those of the C header `ccd/warm.h`, in Rust's case, and the
-//! results the same bits; `include/README.md` lists the guarantees of each call. There is no global
-//! state: queries may run on any threads, and a shape may run queries itself.
+//! Lengths are metres. Names are those of the C header `ccd/warm.h`, in Rust's style, and results have
+//! the same bits as in C; `include/README.md` lists the guarantees of each call. There is no global
+//! state: queries may run on any thread, and a shape may run queries itself.
 
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
@@ -75,7 +75,7 @@ pub use api::{
     signed_distance,
 };
 
-/// Exports internals to this package's own tests and benchmarks; may change in any version.
+/// Internals for this package's own tests and benchmarks; they may change in any version.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::contact::Settings;
@@ -92,7 +92,7 @@ pub mod internals {
     }
 }
 
-/// Tests the Rust program of that page.
+/// Runs the Rust program of `include/README.md` as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../include/README.md")]
 mod readme {}

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Allocates the memory of the largest polytopes: one block of C's heap, when a query needs it.
+//! Allocates the memory of the largest polytopes: one block of C's heap, if a query needs it.
 //!
-//! A C callback may throw or longjmp over this frame, so nothing in [`with`] has a destructor: it
-//! frees the block when the query returns, and a callback that unwinds leaks it. [`Heap`] is for
-//! shapes in Rust, which only unwind.
+//! A C callback may throw or longjmp over this frame, so nothing in [`with_buffers`] has a destructor: it
+//! frees the block when the query returns, and a callback that unwinds leaks it. [`OwnedBuffers`] frees
+//! its block when it is dropped; it is for shapes in Rust, whose panics run destructors.
 
 use core::ptr::NonNull;
 
@@ -13,10 +13,12 @@ use super::{calloc, free};
 use crate::epa::penetration::{Arena, EpaBuffers};
 use crate::minkowski::support::Fault;
 
+/// The block of one query; empty until the query asks for it.
 #[derive(Default)]
-struct Block(Option<NonNull<EpaBuffers>>);
+struct LargeBuffers(Option<NonNull<EpaBuffers>>);
 
-impl Block {
+impl LargeBuffers {
+    /// Frees the block, if any.
     fn free(&mut self) {
         if let Some(block) = self.0.take() {
             // SAFETY: [heap]; the block is no longer used.
@@ -25,7 +27,7 @@ impl Block {
     }
 }
 
-impl Arena for Block {
+impl Arena for LargeBuffers {
     fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
         let block = match self.0 {
             Some(block) => block,
@@ -36,30 +38,30 @@ impl Arena for Block {
             }
         };
         self.0 = Some(block);
-        // SAFETY: [heap]; zero bytes are a valid EpaBuffers, which holds numbers alone.
+        // SAFETY: [heap]; zero bytes are a valid EpaBuffers, which holds only numbers.
         Ok(unsafe { &mut *block.as_ptr() })
     }
 }
 
-/// Runs `query` with an arena and frees the arena's block.
-pub fn with<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
-    let mut block = Block::default();
+/// Runs `query` with a source of buffers, and then frees their block.
+pub fn with_buffers<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
+    let mut block = LargeBuffers::default();
     let result = query(&mut block);
     block.free();
     result
 }
 
-/// An arena that frees its block when it is dropped.
+/// A source of buffers that frees its block when it is dropped.
 #[derive(Default)]
-pub struct Heap(Block);
+pub struct OwnedBuffers(LargeBuffers);
 
-impl Arena for Heap {
+impl Arena for OwnedBuffers {
     fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
         self.0.buffers()
     }
 }
 
-impl Drop for Heap {
+impl Drop for OwnedBuffers {
     fn drop(&mut self) {
         self.0.free();
     }

@@ -28,8 +28,8 @@ impl Object {
 impl SupportMap for Object {
     #[inline]
     fn support(&self, dir: &Vec3) -> Vec3 {
-        // A copy of the whole struct is stored by two packed moves, which forward to the
-        // vector loads of a callee; three scalar stores would stall them.
+        // Copying the whole struct compiles to packed stores. Packed loads of a callee can be served
+        // by store-to-load forwarding from these, but not from three scalar stores.
         let dir = ccd_vec3_t::from(*dir);
         let mut point = ccd_vec3_t::default();
         // SAFETY: [callbacks]; nothing with a destructor is alive here.
@@ -38,11 +38,11 @@ impl SupportMap for Object {
     }
 }
 
-/// Reads a vector that a callback has just written, by three scalar loads: most callbacks store
-/// three scalars, and a packed load would wait for two stores.
+/// Reads a vector that a callback has just written, by three scalar loads. Most callbacks store three
+/// scalars, and a packed load of these could not be served by store-to-load forwarding.
 #[inline(always)]
 fn load(written: &ccd_vec3_t) -> Vec3 {
-    // SAFETY: a reference.
+    // SAFETY: `x` is a valid reference.
     from_real(
         written
             .v
@@ -51,34 +51,34 @@ fn load(written: &ccd_vec3_t) -> Vec3 {
     )
 }
 
-/// The callbacks that a query needs and the tolerance that it reads from a [`ccd_t`].
+/// Kind of a query: the callbacks that it needs and the tolerance that it reads from a [`ccd_t`].
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// libccd's MPR: needs both centers; reads mpr_tolerance.
+pub enum QueryKind {
+    /// A query of libccd's MPR: requires both centers; reads mpr_tolerance.
     Mpr,
-    /// libccd's GJK: needs first_dir, calls no center; reads epa_tolerance.
+    /// A query of libccd's GJK: requires first_dir, calls no center; reads epa_tolerance.
     Gjk,
-    /// The extension's: centers and first_dir are optional; reads mpr_tolerance.
+    /// A query of the extension: centers and first_dir are optional; reads mpr_tolerance.
     Penetration,
-    /// The same; reads epa_tolerance.
+    /// A query of the extension: centers and first_dir are optional; reads epa_tolerance.
     Proven,
-    /// The same; reads dist_tolerance.
+    /// A query of the extension: centers and first_dir are optional; reads dist_tolerance.
     Distance,
 }
 
-impl Kind {
+impl QueryKind {
     /// Returns whether the query is one of libccd's.
     fn is_libccd(self) -> bool {
-        matches!(self, Kind::Mpr | Kind::Gjk)
+        matches!(self, QueryKind::Mpr | QueryKind::Gjk)
     }
 }
 
-/// The tolerance of CCD_INIT, metres: used by libccd's calls where the caller's is negative or NaN.
+/// The tolerance of CCD_INIT, metres: used by libccd's calls if the caller's is negative or NaN.
 const DEFAULT_TOLERANCE: Real = 1e-4;
 
 /// The arguments that every query takes from a C caller.
 #[derive(Clone, Copy)]
-pub struct Query {
+pub struct QueryArgs {
     /// The first object, passed to the callbacks.
     pub obj1: *const c_void,
     /// The second object, passed to the callbacks.
@@ -88,8 +88,8 @@ pub struct Query {
     pub ccd: *const ccd_t,
 }
 
-impl Query {
-    /// Returns the two objects; `None` when `ccd` or a support callback is NULL.
+impl QueryArgs {
+    /// Returns the two objects; `None` if `ccd` or a support callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
@@ -111,7 +111,7 @@ impl Query {
         ))
     }
 
-    /// Returns the difference of the centers, finite or not; `None` when a callback is NULL.
+    /// Returns the difference of the centers, finite or not; `None` if a callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
@@ -123,8 +123,8 @@ impl Query {
         Some(SupportPoint { v: v1 - v2, v1, v2 })
     }
 
-    /// Returns the direction of the first_dir callback, not normalised; `None` when the
-    /// callback is NULL.
+    /// Returns the direction of the first_dir callback, not normalised; `None` if the callback
+    /// is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
@@ -137,22 +137,22 @@ impl Query {
         Some(dir.into())
     }
 
-    /// Returns the pair with its centers or first direction; `None` when `ccd` or a callback that
-    /// the query needs is NULL, or a center is not finite. `has_state`: the caller keeps a state.
+    /// Returns the pair with its centers or first direction; `None` if `ccd` or a callback that the
+    /// query requires is NULL, or a center is not finite. `has_state`: true if the caller keeps a state.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn pair(&self, kind: Kind, has_state: bool) -> Option<Pair<Object, Object>> {
-        // SAFETY: passed on.
+    pub unsafe fn pair(&self, kind: QueryKind, has_state: bool) -> Option<Pair<Object, Object>> {
+        // SAFETY: the caller's guarantees are those of the callee.
         unsafe {
             let (obj1, obj2) = self.objects()?;
             let center = match kind {
-                Kind::Gjk => None,
+                QueryKind::Gjk => None,
                 _ => self.center(),
             };
             if center.is_some_and(|c| !c.v.sum().is_finite())
-                || kind == Kind::Mpr && center.is_none()
+                || kind == QueryKind::Mpr && center.is_none()
             {
                 return None;
             }
@@ -160,7 +160,7 @@ impl Query {
                 Some(_) => None,
                 None => self.first_dir(),
             };
-            if kind == Kind::Gjk && first_dir.is_none() {
+            if kind == QueryKind::Gjk && first_dir.is_none() {
                 return None;
             }
             Some(Pair {
@@ -172,15 +172,15 @@ impl Query {
         }
     }
 
-    /// Returns the pair and the settings; `None` where [`Query::pair`] does, or where the tolerance
-    /// is negative or NaN. libccd's calls then take [`DEFAULT_TOLERANCE`].
+    /// Returns the pair and the settings; `None` if [`QueryArgs::pair`] returns `None`. If the tolerance is
+    /// negative or NaN, libccd's calls use [`DEFAULT_TOLERANCE`]; other queries return `None`.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
     pub unsafe fn prepare(
         &self,
-        kind: Kind,
+        kind: QueryKind,
         has_state: bool,
     ) -> Option<(Pair<Object, Object>, Settings)> {
         if self.ccd.is_null() {
@@ -189,9 +189,9 @@ impl Query {
         // SAFETY: [inputs]; only the fields named are read.
         unsafe {
             let mut tolerance = match kind {
-                Kind::Mpr | Kind::Penetration => (*self.ccd).mpr_tolerance,
-                Kind::Gjk | Kind::Proven => (*self.ccd).epa_tolerance,
-                Kind::Distance => (*self.ccd).dist_tolerance,
+                QueryKind::Mpr | QueryKind::Penetration => (*self.ccd).mpr_tolerance,
+                QueryKind::Gjk | QueryKind::Proven => (*self.ccd).epa_tolerance,
+                QueryKind::Distance => (*self.ccd).dist_tolerance,
             };
             // Negated, so that NaN counts as negative.
             if !(tolerance >= 0.0) {

@@ -6,7 +6,7 @@
 use core::ffi::{c_int, c_void};
 
 use super::arena;
-use super::callbacks::{Kind, Query};
+use super::callbacks::{QueryArgs, QueryKind};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
 use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_code, write_outputs};
@@ -26,7 +26,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     obj2: *const c_void,
     ccd: *const ccd_t,
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
 }
 
@@ -41,9 +41,9 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     obj2: *const c_void,
     ccd: *const ccd_t,
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe {
-        let pair = Query { obj1, obj2, ccd }.pair(Kind::Gjk, false);
+        let pair = QueryArgs { obj1, obj2, ccd }.pair(QueryKind::Gjk, false);
         intersect(pair, core::ptr::null_mut())
     }
 }
@@ -70,7 +70,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }
 
@@ -81,18 +81,18 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
 /// \[inputs\] of the module contract.
 #[inline(never)]
 unsafe fn gjk_penetration(
-    query: Query,
+    query: QueryArgs,
     wants_pos: bool,
     write_hit: &mut dyn FnMut(&Penetration),
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     libccd_code(unsafe {
         run_query(
             query,
-            Kind::Gjk,
+            QueryKind::Gjk,
             core::ptr::null_mut(),
             |pair, state, settings, hit| {
-                arena::with(|arena| pair.proven(state, settings, arena, wants_pos, hit))
+                arena::with_buffers(|arena| pair.proven(state, settings, arena, wants_pos, hit))
             },
             |hit, _| write_hit(hit),
         )
@@ -120,9 +120,9 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on; [outputs].
+    // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
-        gjk_penetration(Query { obj1, obj2, ccd }, !pos.is_null(), &mut |hit| {
+        gjk_penetration(QueryArgs { obj1, obj2, ccd }, !pos.is_null(), &mut |hit| {
             write_outputs(hit, depth, dir, pos);
         })
     }
@@ -137,9 +137,9 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
     ccd: *const ccd_t,
     sep: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on; [outputs].
+    // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
-        gjk_penetration(Query { obj1, obj2, ccd }, false, &mut |hit| {
+        gjk_penetration(QueryArgs { obj1, obj2, ccd }, false, &mut |hit| {
             if let Some(sep) = sep.as_mut() {
                 *sep = (hit.dir * hit.depth).into();
             }

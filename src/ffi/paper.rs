@@ -8,7 +8,7 @@
 
 use core::ffi::{c_int, c_uint, c_void};
 
-use super::callbacks::{Kind, Query};
+use super::callbacks::{QueryArgs, QueryKind};
 use super::types::ccd_t;
 use super::warm::penetration::{ccd_penetration_t, fill};
 use super::warm::state::ccd_warm_t;
@@ -34,13 +34,13 @@ pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
-    // SAFETY: passed on.
+    let query = QueryArgs { obj1, obj2, ccd };
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe {
         let solve =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
                 pair.incremental(None, state, settings, wants, hit)
             };
-        fill(query, Kind::Penetration, warm, want, out, solve)
+        fill(query, QueryKind::Penetration, warm, want, out, solve)
     }
 }

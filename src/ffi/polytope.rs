@@ -5,7 +5,7 @@
 //! closest to the origin (libccd's field `nearest`). No solver here uses it. FCL's EPA does, with
 //! inline functions of its own that unlink and free() the nodes allocated here.
 //!
-//! So a node is one block of C's malloc, the links are ordered as libccd orders them, and
+//! Therefore a node is one block of C's malloc, the links are ordered as libccd orders them, and
 //! `nearest` is updated by libccd's rule. [`crate::gjk::barycentric`] computes the distances.
 
 use core::ffi::{c_char, c_int};
@@ -306,12 +306,12 @@ unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     // SAFETY: [polytope].
     unsafe {
         let (dist, kind) = ((*element).dist, (*element).kind);
-        let lower = kind < (*pt).nearest_type;
+        let is_lower_type = kind < (*pt).nearest_type;
         // Equality is tested last: the first two comparisons decide most cases.
         let is_closer = if dist < (*pt).nearest_dist {
-            lower || !equal((*pt).nearest_dist, dist)
+            is_lower_type || !equal((*pt).nearest_dist, dist)
         } else {
-            lower && equal((*pt).nearest_dist, dist)
+            is_lower_type && equal((*pt).nearest_dist, dist)
         };
         if is_closer {
             (*pt).nearest = element;
@@ -321,8 +321,8 @@ unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     }
 }
 
-/// Returns ccdEq of `ccd/vec3.h`. Its absolute term is part of the interface: it decides ties
-/// between elements, which FCL's EPA depends on.
+/// Returns whether two numbers are equal by ccdEq of `ccd/vec3.h`. Its absolute term is part of the
+/// interface: it decides ties between elements, which FCL's EPA depends on.
 #[inline(always)]
 fn equal(a: Real, b: Real) -> bool {
     let difference = (a - b).abs();
@@ -330,7 +330,8 @@ fn equal(a: Real, b: Real) -> bool {
     difference < Real::EPSILON || difference < Real::EPSILON * if b > a { b } else { a }
 }
 
-/// Returns the vertices of the first edge, and the vertex of the second that is not among them.
+/// Returns the vertices of a face: those of its first edge, and the one of the second edge that is not
+/// among them.
 #[inline(always)]
 unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
     // SAFETY: [polytope].
@@ -341,6 +342,7 @@ unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
     }
 }
 
+/// Makes `head` an empty list.
 unsafe fn list_init(head: *mut ccd_list_t) {
     // SAFETY: [polytope].
     unsafe {
@@ -361,6 +363,7 @@ unsafe fn list_append(head: *mut ccd_list_t, node: *mut ccd_list_t) {
     }
 }
 
+/// Unlinks `node` from its list.
 unsafe fn list_remove(node: *mut ccd_list_t) {
     // SAFETY: [polytope].
     unsafe {

@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_uint, c_void};
 
-use super::super::callbacks::Query;
+use super::super::callbacks::QueryArgs;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::unit_of;
@@ -105,7 +105,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
         return CCD_BAD_INPUT;
     }
     // SAFETY: [inputs].
-    let (normal, objects) = unsafe { (unit_of(normal), Query { obj1, obj2, ccd }.objects()) };
+    let (normal, objects) = unsafe { (unit_of(normal), QueryArgs { obj1, obj2, ccd }.objects()) };
     let (Some(normal), Some((one, two))) = (normal, objects) else {
         return CCD_BAD_INPUT;
     };

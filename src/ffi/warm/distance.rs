@@ -6,7 +6,7 @@
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
 use super::super::arena;
-use super::super::callbacks::{Kind, Query};
+use super::super::callbacks::{QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, point_if};
@@ -84,10 +84,10 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
     if out.is_null() || want & !CCD_WANT_ALL != 0 || !valid {
         return CCD_BAD_INPUT;
     }
-    let query = Query { obj1, obj2, ccd };
-    // SAFETY: [inputs], [outputs]; passed on.
+    let query = QueryArgs { obj1, obj2, ccd };
+    // SAFETY: the caller's guarantees are those of the callee; [inputs], [outputs].
     unsafe {
-        let Some((pair, settings)) = query.prepare(Kind::Distance, !warm.is_null()) else {
+        let Some((pair, settings)) = query.prepare(QueryKind::Distance, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
         let wanted = Wanted {
@@ -98,7 +98,7 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         };
         let minimum =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, hit: &mut _| {
-                arena::with(|arena| pair.proven(state, settings, arena, false, hit))
+                arena::with_buffers(|arena| pair.proven(state, settings, arena, false, hit))
             };
         with_state(warm, |state| {
             let distance = pair.signed_distance(state, &wanted, minimum)?;

@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Kind, Object, Query};
+use super::super::callbacks::{Object, QueryArgs, QueryKind};
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, with_state};
 use crate::minkowski::query::if_overlapping;
@@ -29,7 +29,8 @@ pub(in crate::ffi) unsafe fn intersect(
         let overlap = if_overlapping(pair.intersect(Some(state)))?;
         Ok(c_int::from(overlap.is_some()))
     };
-    // SAFETY: passed on. A fault has a code below 0.
+    // Faults have negative codes; they count as no overlap.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe { with_state(warm, solve) }.max(0)
 }
 
@@ -49,7 +50,7 @@ pub unsafe extern "C-unwind" fn ccdIntersect(
     ccd: *const ccd_t,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
-    // SAFETY: passed on.
-    unsafe { intersect(query.pair(Kind::Penetration, !warm.is_null()), warm) }
+    let query = QueryArgs { obj1, obj2, ccd };
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { intersect(query.pair(QueryKind::Penetration, !warm.is_null()), warm) }
 }

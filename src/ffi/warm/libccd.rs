@@ -6,7 +6,7 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Kind, Query};
+use super::super::callbacks::{QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::intersect::intersect;
@@ -67,11 +67,11 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: passed on; [outputs].
+    // SAFETY: the caller's guarantees are those of the callee; [outputs].
     libccd_code(unsafe {
         run_query(
-            Query { obj1, obj2, ccd },
-            Kind::Mpr,
+            QueryArgs { obj1, obj2, ccd },
+            QueryKind::Mpr,
             warm,
             |pair, state, settings, hit| pair.penetration(state, settings, !pos.is_null(), hit),
             |hit, _| write_outputs(hit, depth, dir, pos),
@@ -93,7 +93,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     ccd: *const ccd_t,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
-    // SAFETY: passed on.
-    unsafe { intersect(query.pair(Kind::Mpr, !warm.is_null()), warm) }
+    let query = QueryArgs { obj1, obj2, ccd };
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { intersect(query.pair(QueryKind::Mpr, !warm.is_null()), warm) }
 }

@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{Kind, Object, Query};
+use super::super::callbacks::{Object, QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
@@ -88,8 +88,8 @@ impl ccd_penetration_t {
 /// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
 /// with a destructor is alive here.
 pub(in crate::ffi) unsafe fn run_query(
-    query: Query,
-    kind: Kind,
+    query: QueryArgs,
+    kind: QueryKind,
     warm: *mut ccd_warm_t,
     solve: impl FnOnce(
         &Pair<Object, Object>,
@@ -121,8 +121,8 @@ pub(in crate::ffi) unsafe fn run_query(
 /// # Safety
 /// As [`run_query`].
 pub(in crate::ffi) unsafe fn fill(
-    query: Query,
-    kind: Kind,
+    query: QueryArgs,
+    kind: QueryKind,
     warm: *mut ccd_warm_t,
     want: c_uint,
     out: *mut ccd_penetration_t,
@@ -138,7 +138,7 @@ pub(in crate::ffi) unsafe fn fill(
         return CCD_BAD_INPUT;
     }
     let wants_pos = want & CCD_WANT_POS != 0;
-    // SAFETY: [outputs]; passed on.
+    // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
         run_query(
             query,
@@ -170,7 +170,7 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
-    // SAFETY: passed on.
-    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::penetration) }
+    let (query, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { fill(query, kind, warm, want, out, Pair::penetration) }
 }

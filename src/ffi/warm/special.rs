@@ -6,7 +6,7 @@
 use core::ffi::{c_int, c_uint, c_void};
 
 use super::super::arena;
-use super::super::callbacks::{Kind, Query};
+use super::super::callbacks::{QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::penetration::{ccd_penetration_t, fill};
@@ -33,9 +33,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
-    // SAFETY: passed on.
-    unsafe { fill(query, Kind::Penetration, warm, want, out, Pair::local) }
+    let query = QueryArgs { obj1, obj2, ccd };
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { fill(query, QueryKind::Penetration, warm, want, out, Pair::local) }
 }
 
 /// Computes the globally least penetration depth with a certificate: depth - depth_lower <=
@@ -56,13 +56,13 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = Query { obj1, obj2, ccd };
+    let query = QueryArgs { obj1, obj2, ccd };
     let solve =
         |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
-            arena::with(|arena| pair.proven(state, settings, arena, wants, hit))
+            arena::with_buffers(|arena| pair.proven(state, settings, arena, wants, hit))
         };
-    // SAFETY: passed on.
-    unsafe { fill(query, Kind::Proven, warm, want, out, solve) }
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { fill(query, QueryKind::Proven, warm, want, out, solve) }
 }
 
 /// Computes the directional penetration depth: the least distance by which obj2 must move along
@@ -84,17 +84,17 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe {
         let Some(dir) = unit_of(dir) else {
             return CCD_BAD_INPUT;
         };
-        let query = Query { obj1, obj2, ccd };
+        let query = QueryArgs { obj1, obj2, ccd };
         let solve =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
                 pair.along(dir, state, settings, hit)
             };
-        fill(query, Kind::Penetration, warm, want, out, solve)
+        fill(query, QueryKind::Penetration, warm, want, out, solve)
     }
 }
 
@@ -117,16 +117,16 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe {
         let Some(plane_normal) = unit_of(plane_normal) else {
             return CCD_BAD_INPUT;
         };
-        let query = Query { obj1, obj2, ccd };
+        let query = QueryArgs { obj1, obj2, ccd };
         let solve =
             |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
                 pair.incremental(Some(plane_normal), state, settings, false, hit)
             };
-        fill(query, Kind::Penetration, warm, want, out, solve)
+        fill(query, QueryKind::Penetration, warm, want, out, solve)
     }
 }

@@ -59,7 +59,7 @@ pub(in crate::ffi) unsafe fn with_state(
     warm: *mut ccd_warm_t,
     solve: impl FnOnce(&mut WarmStart) -> Result<c_int, Fault>,
 ) -> c_int {
-    // SAFETY: passed on.
+    // SAFETY: the caller's guarantees are those of the callee.
     unsafe {
         let mut state = read(warm);
         match solve(&mut state) {
