@@ -171,7 +171,7 @@ impl Settings {
     ///
     /// # Errors
     /// A tolerance that is negative or NaN.
-    fn to_solver_settings(&self) -> Result<contact::Settings, Error> {
+    fn solver_settings(&self) -> Result<contact::Settings, Error> {
         Ok(contact::Settings {
             tolerance: validate_length(self.tolerance, "the tolerance is negative or NaN")?,
             max_iterations: ITERATION_CAP.min(self.max_iterations),
@@ -380,12 +380,12 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
         &mut contact::Penetration,
     ) -> Result<(), Stop>,
 ) -> Result<Option<Penetration>, Error> {
-    let solver_settings = settings.to_solver_settings()?;
+    let solver = settings.solver_settings()?;
     let want = settings.want;
     let pair = make_pair(a, b, warm.is_some())?;
     let mut hit = contact::Penetration::default();
     let found = with_state(warm, |state| {
-        if_overlapping(solve(&pair, state, &solver_settings, want.pos, &mut hit))
+        if_overlapping(solve(&pair, state, &solver, want.pos, &mut hit))
     })?;
     let point_if = |wanted: bool, point: Vec3| if wanted { to_real(&point) } else { [0.0; 3] };
     Ok(found.map(|()| Penetration {
@@ -518,7 +518,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         margin1: validate_length(options.margin1, margins)?,
         margin2: validate_length(options.margin2, margins)?,
         max_distance: validate_length(options.max_distance, "max_distance is negative or NaN")?,
-        settings: settings.to_solver_settings()?,
+        settings: settings.solver_settings()?,
     };
     if !(wanted.margin1 + wanted.margin2 < f64::from(Real::MAX)) {
         return Err(Error::BadInput(margins));
