@@ -23,13 +23,6 @@ mkdir -p "$work"
 # LD_LIBRARY_PATH needs the file under the name that programs ask for.
 ln -sf "$release/libccd.so" "$work/libccd.so.2"
 
-# compile PROGRAM [FLAG...]
-compile() {
-    program=$1
-    shift
-    cc -std=c99 -O2 -Iinclude -Ic-tests "$@" c-tests/tools/record/replay.c -o "$work/$program" "$work/libccd.so.2" -lm
-}
-
 # libccd_of PROGRAM: prints the libccd.so.2 that the dynamic linker gives the program
 libccd_of() {
     ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p'
@@ -74,10 +67,11 @@ show() {
 # A missing function would show at the start.
 export LD_BIND_NOW=1
 unset LD_LIBRARY_PATH
-compile replay
-compile replay_extension -DOURS_ALONE
 rm -f "$work"/*.txt
 for program in replay replay_extension; do
+    flag=-DOURS_ALONE
+    [ $program = replay_extension ] || flag=-UOURS_ALONE
+    cc -std=c99 -O2 -Iinclude -Ic-tests $flag c-tests/tools/record/replay.c -o "$work/$program" "$work/libccd.so.2" -lm
     if [ "$(LD_LIBRARY_PATH=$work libccd_of "$work/$program")" != "$work/libccd.so.2" ]; then
         echo "main.sh: $program does not run on this library" >&2
         exit 1

@@ -36,7 +36,7 @@ enum Command {
     /// The pictures and their page from the CSV files that are there.
     Redraw(charts::Options),
     /// This library beside other engines, over the recorded contacts; downloads what it can.
-    Engines(charts::engines::Options),
+    Engines,
     /// Instructions of a query, as Markdown; runs this program under valgrind.
     Instructions(charts::instructions::Options),
 }
@@ -47,7 +47,7 @@ fn main() {
         Command::Record => measuring::recorded::record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
-        Command::Engines(options) => charts::engines::run(&options, counting),
+        Command::Engines => charts::engines::run(counting),
         Command::Instructions(options) => charts::instructions::run(&options, counting),
     }
 }

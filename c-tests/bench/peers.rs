@@ -14,6 +14,7 @@ use parry3d_f64::shape::SupportMap;
 
 use crate::measuring::libraries::{Libraries, function};
 use crate::measuring::methods::{Answer, Depth, Method, Start, depth_call, run_call};
+use crate::measuring::scene::Pair;
 
 /// A shape of the callbacks as parry's trait, in world coordinates.
 struct Convex {
@@ -39,7 +40,7 @@ impl SupportMap for Convex {
 
 /// Returns parry3d's GJK and EPA from the centre difference.
 fn parry(libraries: &Libraries) -> Method<'_> {
-    Method::new("parry EPA", Start::None, None, |_, pair| {
+    let query = |pair: &Pair| {
         let convex = |shape: *mut c_void| Convex { shape, support: libraries.callbacks.support };
         let result = contact_support_map_support_map_with_params(
             &Pose::IDENTITY,
@@ -53,7 +54,8 @@ fn parry(libraries: &Libraries) -> Method<'_> {
             GJKResult::ClosestPoints(p, q, n) => Some(Answer { depth: (p - q).dot(n), dir: n.into() }),
             _ => None,
         }
-    })
+    };
+    Method::new("parry EPA", Start::None, None, Box::new(query))
 }
 
 /// Returns the folder to which `engines.sh` downloads.
@@ -80,7 +82,7 @@ impl Peers {
             let include = |path: &&str| format!("-isystem{}", engines().join(path).display());
             let mut flags: Vec<String> = headers.iter().map(include).collect();
             flags.extend(["-std=c++17".to_owned(), "-w".to_owned(), format!("-DPEER_{part}")]);
-            match libraries.helper(part, "peers.cpp", &flags, linked) {
+            match libraries.peer(part, &flags, linked) {
                 // SAFETY: peer_penetration has the type of ccdMPRPenetration.
                 Ok(library) => peers.found.push((name, tolerance, unsafe { function(library, "peer_penetration") })),
                 Err(why) => peers.missing.push((name, why.lines().next().unwrap_or_default().to_owned())),

@@ -6,8 +6,6 @@
 
 use std::process::Command;
 
-use clap::Args;
-
 use super::{OUT, Page, figure, results};
 use crate::harness;
 use crate::measuring::csv;
@@ -24,12 +22,8 @@ const METHODS: [(&str, Start, f64); 3] = [
     ("libccd ccdGJKPenetration", Start::None, 1e-6),
 ];
 
-#[derive(Args)]
-pub struct Options {
-    /// Instructions are counted for every n-th contact; the rest is measured for all.
-    #[arg(long, default_value_t = 5)]
-    every: usize,
-}
+/// Instructions are counted for every n-th contact; the rest is measured for all.
+const EVERY: usize = 5;
 
 fn table(rows: &[Row]) -> String {
     let base = rows.iter().find(|r| r.method == METHODS[1].0).and_then(|r| r.ns);
@@ -64,7 +58,7 @@ pub fn draw(page: &Page, rows: &[Row]) {
 }
 
 /// Downloads what engines.sh can, measures all, and writes the table, its numbers and the picture.
-pub fn run(options: &Options, is_counting: bool) {
+pub fn run(is_counting: bool) {
     let libraries = Libraries::open();
     if !is_counting {
         let script = harness::root().join("c-tests/bench/engines.sh");
@@ -77,8 +71,7 @@ pub fn run(options: &Options, is_counting: bool) {
     scene.pairs.retain(|pair| pair.truth.depth > 1e-9);
     let mut methods = select(&libraries, &METHODS);
     methods.extend(peers.methods(&libraries));
-    let command = ["engines".to_owned(), format!("--every={}", options.every)];
-    let mut runner = Runner::new(&libraries, 5).with_instructions(options.every, &command, is_counting);
+    let mut runner = Runner::new(&libraries, 5).with_instructions(EVERY, &["engines"], is_counting);
     let mut rows = runner.rows(&scene, methods);
     if is_counting {
         return;

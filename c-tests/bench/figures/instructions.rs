@@ -14,6 +14,9 @@ use crate::measuring::scene::Scene;
 /// The sets of the page: a cheap support function and an expensive one, and their motions.
 const ON_THE_PAGE: [&str; 4] = ["box_box", "p642_p642", "box_box_trajS", "p642_cap_trajS"];
 
+/// Poses of a pair set.
+const POSES: usize = 100;
+
 /// The calls on independent poses; the first five are on the page.
 const ON_POSES: [(&str, Start, f64); 8] = [
     ("libccd ccdMPRPenetration", Start::None, 1e-6),
@@ -35,9 +38,6 @@ const ON_MOTIONS: [(&str, Start, f64); 4] = [
 
 #[derive(Args)]
 pub struct Options {
-    /// Poses of a pair set.
-    #[arg(long, default_value_t = 100)]
-    poses: usize,
     /// Every call over a pair set of c-tests/bench/pairs, in place of the page's.
     #[arg(long)]
     set: Option<String>,
@@ -45,11 +45,11 @@ pub struct Options {
 
 /// Returns the rows with their counts; none without valgrind, and in the process under it.
 fn counted(libraries: &Libraries, options: &Options, is_counting: bool) -> Vec<Row> {
-    let mut command = vec!["instructions".to_owned(), format!("--poses={}", options.poses)];
-    command.extend(options.set.iter().map(|set| format!("--set={set}")));
+    let mut command = vec!["instructions"];
+    command.extend(options.set.iter().flat_map(|set| ["--set", set]));
     let mut runner = Runner::new(libraries, 0).with_instructions(1, &command, is_counting);
     let rows = |set: &str| {
-        let scene = Scene::load(libraries, set, options.poses);
+        let scene = Scene::load(libraries, set, POSES);
         let (list, num_on_the_page) = if scene.is_motion() { (&ON_MOTIONS[..], 2) } else { (&ON_POSES[..], 5) };
         let shown = if options.set.is_some() { list } else { &list[..num_on_the_page] };
         runner.rows(&scene, select(libraries, shown))
@@ -68,5 +68,5 @@ pub fn run(options: &Options, is_counting: bool) {
 }
 
 pub fn measure(bench: &Bench) -> Vec<Row> {
-    counted(bench.libraries, &Options { poses: if bench.quick { 25 } else { 100 }, set: None }, false)
+    counted(bench.libraries, &Options { set: None }, false)
 }

@@ -60,13 +60,10 @@ static size_t read_recording(const recording_t *r, bench_pose_t *pose)
     for (uint32_t f = 0; pose && body && f < r->frames; f++) {
         recording_place(r, f, body);
         for (uint32_t i = 0; i < r->frame_pairs[f]; i++, k++, pose++) {
-            unsigned a, b;
-            double lower, upper;
+            const recording_pair_t *pair = &r->pair[k];
             ccd_vec3_t center[2], d;
-            recording_pair(r, f, i, &a, &b);
-            recording_truth(r, k, &lower, &upper);
-            *pose->a = body[a];
-            *pose->b = body[b];
+            *pose->a = body[pair->a];
+            *pose->b = body[pair->b];
             shape_center(pose->a, &center[0]);
             shape_center(pose->b, &center[1]);
             ccdVec3Sub2(&d, &center[1], &center[0]);
@@ -75,9 +72,9 @@ static size_t read_recording(const recording_t *r, bench_pose_t *pose)
             else
                 ccdVec3Set(&d, 1, 0, 0);
             memcpy(pose->truth.cold, d.v, sizeof d.v);
-            pose->truth.depth = (lower + upper) / 2;
-            pose->truth.gap = upper - lower;
-            pose->motion = (size_t)a * r->bodies + b;
+            pose->truth.depth = (pair->lower + pair->upper) / 2;
+            pose->truth.gap = pair->upper - pair->lower;
+            pose->motion = (size_t)pair->a * r->bodies + pair->b;
             pose->frame = f;
         }
     }

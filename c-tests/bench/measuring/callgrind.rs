@@ -47,14 +47,14 @@ pub fn count(libraries: &Libraries, scene: &Scene, method: &mut Method, every: u
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.begin)() };
     for pair in scene.pairs.iter().step_by(every) {
-        std::hint::black_box(method.query(scene, pair));
+        std::hint::black_box(method.query(pair));
     }
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.end)() };
 }
 
 /// Runs this program under callgrind with the words of a command and `--counting`. Returns the counts in their order.
-pub fn counts(command: &[String]) -> Result<Vec<Count>, String> {
+pub fn counts(command: &[&str]) -> Result<Vec<Count>, String> {
     let program = std::env::current_exe().map_err(|e| e.to_string())?;
     let mut plain = Command::new(&program);
     let dumps = ["--zero-before=bench_begin", "--dump-after=bench_end"];

@@ -199,7 +199,7 @@ unsafe extern "C-unwind" fn middle(object: *const c_void, out: *mut ccd_vec3_t) 
 pub fn methods<'a>(libraries: &'a Libraries, [a, b]: &'a [Polytope; 2], start: Start) -> Vec<Method<'a>> {
     let pose = |pair: &Pair| [pair.a, pair.b].map(|shape| libraries.pose(shape));
     let mut hub = (0, 0);
-    let deep = move |_: &Scene, pair: &Pair| {
+    let deep = move |pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
         let turn = ra.transpose() * rb;
         let shift = ra.transpose() * (pb - pa);
@@ -217,13 +217,16 @@ pub fn methods<'a>(libraries: &'a Libraries, [a, b]: &'a [Polytope; 2], start: S
     let call = find_call(libraries, Entry::find("ccdPenetrationLocal"));
     let mut query = run_call(libraries, call, start, settings);
     let mut last = (0, 0);
-    let local = move |scene: &Scene, pair: &Pair| {
+    let local = move |pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
         let mut one = Climber { of: a, rotation: ra, position: pa, last: last.0 };
         let mut two = Climber { of: b, rotation: rb, position: pb, last: last.1 };
-        let answer = query(scene, &Pair { a: (&raw mut one).cast(), b: (&raw mut two).cast(), ..*pair });
+        let answer = query(&Pair { a: (&raw mut one).cast(), b: (&raw mut two).cast(), ..*pair });
         last = (one.last, two.last);
         answer
     };
-    vec![Method::new("DEEP", start, None, deep), Method::new("ccdPenetrationLocal, climbing", start, Some(1e-6), local)]
+    vec![
+        Method::new("DEEP", start, None, Box::new(deep)),
+        Method::new("ccdPenetrationLocal, climbing", start, Some(1e-6), Box::new(local)),
+    ]
 }

@@ -8,7 +8,7 @@
 //! [`Libraries::open`] asserts all of that: otherwise the benchmark might compare a library with itself. The C callbacks
 //! are a shared object of their own, compiled when the program starts, so that every method pays the same for them.
 
-use std::ffi::{CStr, CString, c_char, c_int, c_ulong, c_void};
+use std::ffi::{CStr, c_char, c_int, c_ulong, c_void};
 use std::path::Path;
 use std::process::Command;
 
@@ -70,9 +70,8 @@ impl Libraries {
     pub fn open() -> Self {
         let work = tempfile::tempdir().expect("a temporary directory");
         let object = work.path().join("callbacks.so");
-        let source = harness::root().join("c-tests/bench/measuring/callbacks.c");
-        let compiler =
-            compile(false, &[], &source, &object, &[]).unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
+        let compiler = compile(false, &[], "measuring/callbacks.c", &object, &[]);
+        let compiler = compiler.unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 
         // The bare name: what the system's loader finds, which must not be this library. First, because both have that
         // name, and the loader takes the first, also for a peer that needs libccd.
@@ -135,16 +134,10 @@ impl Libraries {
         }
     }
 
-    /// Compiles another source file of `c-tests/bench`, in C++, and opens it; returns why not, if that fails.
-    pub fn helper(
-        &self,
-        name: &str,
-        source: &str,
-        flags: &[String],
-        linked: &[String],
-    ) -> Result<&'static Library, String> {
-        let object = self.work.path().join(format!("{name}.so"));
-        compile(true, flags, &harness::root().join("c-tests/bench").join(source), &object, linked)?;
+    /// Compiles a part of `peers.cpp` and opens it; returns why not, if that fails.
+    pub fn peer(&self, part: &str, flags: &[String], linked: &[String]) -> Result<&'static Library, String> {
+        let object = self.work.path().join(format!("{part}.so"));
+        compile(true, flags, "peers.cpp", &object, linked)?;
         open(&object).map_err(|e| e.to_string())
     }
 
@@ -155,16 +148,11 @@ impl Libraries {
         unsafe { (self.callbacks.pose)(shape, position.as_mut_ptr(), rotation.as_mut_ptr()) };
         (Matrix3::from_row_slice(&rotation), position.into())
     }
-
-    /// Converts a path to a C string.
-    pub fn c_path(path: &Path) -> CString {
-        CString::new(path.to_str().expect("a path in UTF-8")).expect("a path without NUL")
-    }
 }
 
-/// Compiles one source file to a shared object: fast code, and on x86-64 that of every machine of the last ten years.
+/// Compiles a source file of `c-tests/bench` to a shared object: fast code, and on x86-64 that of every machine of the last ten years.
 /// Returns the compiler and its usual flags.
-fn compile(cpp: bool, flags: &[String], source: &Path, object: &Path, linked: &[String]) -> Result<String, String> {
+fn compile(cpp: bool, flags: &[String], source: &str, object: &Path, linked: &[String]) -> Result<String, String> {
     let mut compiler = harness::compiler(cpp);
     compiler.opt_level(3).debug(false);
     if cfg!(target_arch = "x86_64") {
@@ -174,11 +162,9 @@ fn compile(cpp: bool, flags: &[String], source: &Path, object: &Path, linked: &[
     let tool = compile.get_program().to_owned();
     let own = compile.get_args().map(|arg| arg.to_string_lossy());
     let shown = own.collect::<Vec<_>>().join(" ");
-    let root = harness::root();
-    for include in ["include", "c-tests"] {
-        compile.arg("-I").arg(root.join(include));
-    }
-    compile.args(flags).args(["-shared", "-fPIC"]).arg(source);
+    let tests = harness::root().join("c-tests");
+    compile.arg("-I").arg(harness::root().join("include")).arg("-I").arg(&tests).args(flags);
+    compile.args(["-shared", "-fPIC"]).arg(tests.join("bench").join(source));
     compile.arg("-o").arg(object).args(linked).arg("-lm");
     let run = compile.output().map_err(|e| format!("{tool:?}: {e}"))?;
     if !run.status.success() {

@@ -101,7 +101,7 @@ impl<'a> Runner<'a> {
 
     /// Also counts instructions on every n-th pair, for which it runs this program under callgrind with the words of a
     /// command and `--counting`; `is_counting` in that process.
-    pub fn with_instructions(mut self, every: usize, command: &[String], is_counting: bool) -> Self {
+    pub fn with_instructions(mut self, every: usize, command: &[&str], is_counting: bool) -> Self {
         let report = |why: String| println!("instructions not counted: {}", why.lines().last().unwrap_or_default());
         let count = || callgrind::counts(command).map_err(report);
         self.counts = if is_counting { None } else { count().ok().map(Vec::into_iter) };
@@ -184,7 +184,7 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
     let (mut errors, mut near, mut num_calls) = (vec![], vec![], 0);
     for pair in &scene.pairs {
         let before = calls(pair);
-        let answer = method.query(scene, pair);
+        let answer = method.query(pair);
         let after = calls(pair);
         if method.is_warm() && pair.frame == 0 {
             continue;
@@ -283,9 +283,9 @@ fn pass(scene: &Scene, method: &mut Method) -> Vec<(f64, usize)> {
     };
     let time = |chunk: &[Pair]| {
         let (untimed, timed) = chunk.split_at(num_untimed);
-        untimed.iter().for_each(|pair| _ = black_box(method.query(scene, pair)));
+        untimed.iter().for_each(|pair| _ = black_box(method.query(pair)));
         let begin = thread_nanoseconds();
-        timed.iter().for_each(|pair| _ = black_box(method.query(scene, pair)));
+        timed.iter().for_each(|pair| _ = black_box(method.query(pair)));
         (thread_nanoseconds() - begin, timed.len())
     };
     chunks.into_iter().map(time).collect()

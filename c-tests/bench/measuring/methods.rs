@@ -11,7 +11,7 @@ use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 use serde::{Deserialize, Serialize};
 
 use super::libraries::{COLD, Libraries, function};
-use super::scene::{Pair, Scene, Truth};
+use super::scene::{Pair, Truth};
 
 /// Interface of a method: the arguments of a library's call behind the two objects and their settings.
 #[derive(Clone, Copy)]
@@ -143,7 +143,8 @@ pub struct Answer {
     pub dir: [f64; 3],
 }
 
-type Run<'a> = Box<dyn FnMut(&Scene, &Pair) -> Option<Answer> + 'a>;
+/// A query of a method; warm ones expect the pairs of a motion in order.
+pub type Query<'a> = Box<dyn FnMut(&Pair) -> Option<Answer> + 'a>;
 
 /// A method with its start and tolerance.
 pub struct Method<'a> {
@@ -151,17 +152,12 @@ pub struct Method<'a> {
     pub start: Start,
     /// None if it is built in.
     pub tolerance: Option<f64>,
-    run: Run<'a>,
+    query: Query<'a>,
 }
 
 impl<'a> Method<'a> {
-    pub fn new(
-        name: &str,
-        start: Start,
-        tolerance: Option<f64>,
-        run: impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a,
-    ) -> Self {
-        Self { entry: Entry::find(name), start, tolerance, run: Box::new(run) }
+    pub fn new(name: &str, start: Start, tolerance: Option<f64>, query: Query<'a>) -> Self {
+        Self { entry: Entry::find(name), start, tolerance, query }
     }
 
     pub fn is_warm(&self) -> bool {
@@ -169,8 +165,8 @@ impl<'a> Method<'a> {
     }
 
     #[inline]
-    pub fn query(&mut self, scene: &Scene, pair: &Pair) -> Option<Answer> {
-        (self.run)(scene, pair)
+    pub fn query(&mut self, pair: &Pair) -> Option<Answer> {
+        (self.query)(pair)
     }
 }
 
@@ -244,17 +240,12 @@ pub fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
 }
 
 /// Runs a library's call. Every guess is a fresh state, `Warm` one state a motion.
-pub fn run_call<'a>(
-    libraries: &Libraries,
-    call: Call,
-    start: Start,
-    settings: ccd_t,
-) -> impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a {
+pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t) -> Query<'static> {
     type WarmGuess = unsafe extern "C-unwind" fn(Warm, *const ccd_vec3_t);
     // SAFETY: the type is that of <ccd/warm.h>.
     let warm_guess: WarmGuess = unsafe { function(libraries.ours, "ccdWarmGuess") };
     let mut state = COLD;
-    move |_, pair| {
+    Box::new(move |pair| {
         if let Some(v) = start.guess(&pair.truth) {
             // SAFETY: a state and a direction.
             unsafe { warm_guess(&mut state, &ccd_vec3_t { v }) };
@@ -266,20 +257,15 @@ pub fn run_call<'a>(
         let code = call(pair, &settings, &mut state, &mut out);
         // A hit; CCD_LIMIT has a sound result too.
         (code == 0 || code == CCD_LIMIT).then_some(Answer { depth: out.depth, dir: out.dir.v })
-    }
+    })
 }
 
 /// Runs the paper's algorithms, which match the published implementation but return the portal's normal.
-fn gao<'a>(
-    libraries: &'a Libraries,
-    until: Until,
-    start: Start,
-    tolerance: f64,
-) -> impl FnMut(&Scene, &Pair) -> Option<Answer> + 'a {
+fn gao(libraries: &Libraries, until: Until, start: Start, tolerance: f64) -> Query<'static> {
     let settings = Settings { tolerance, max_iterations: 10_000 };
     let support = libraries.callbacks.support;
     let mut last = None;
-    move |_, pair| {
+    Box::new(move |pair| {
         let object = |shape: *mut c_void| {
             move |dir: &Vec3| {
                 let (dir, mut out) = (ccd_vec3_t::from(*dir), ccd_vec3_t::default());
@@ -295,5 +281,5 @@ fn gao<'a>(
         let found = incremental(&md, from, None, until, &settings, |_| ()).ok()?;
         last = Some(found.dir);
         Some(Answer { depth: found.depth, dir: found.dir.into() })
-    }
+    })
 }

@@ -4,8 +4,9 @@
 //! Pairs of shapes in many poses, each with the global minimum of its penetration depth: pair sets of
 //! `c-tests/bench/pairs` and the recorded contacts of `c-tests/tools/record`.
 
-use std::ffi::c_void;
-use std::path::PathBuf;
+use std::ffi::{CString, c_void};
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
 use std::ptr::null_mut;
 
 use super::libraries::Libraries;
@@ -61,11 +62,12 @@ impl Scene {
         Self::read(libraries, "recorded", &harness::root().join("c-tests/tools/record/contacts.bin"))
     }
 
-    fn read(libraries: &Libraries, name: &str, path: &std::path::Path) -> Self {
+    fn read(libraries: &Libraries, name: &str, path: &Path) -> Self {
+        let file = CString::new(path.as_os_str().as_bytes()).expect("a path without NUL");
         let mut poses = null_mut();
-        // SAFETY: as callbacks.c says: so many poses, which are never freed.
+        // SAFETY: the contract of callbacks.c: so many poses, which are never freed.
         let mut pairs: Vec<Pair> = unsafe {
-            let count = (libraries.callbacks.scene)(Libraries::c_path(path).as_ptr(), &mut poses);
+            let count = (libraries.callbacks.scene)(file.as_ptr(), &mut poses);
             assert!(count > 0, "{} is neither a pair set nor a recording", path.display());
             std::slice::from_raw_parts(poses, count).to_vec()
         };

@@ -38,22 +38,16 @@ typedef struct {
 typedef struct method {
     const char *name;
     int (*evaluate)(const struct method *, const query_t *, result_t *);
+    int (*libccd)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
     int call, is_warm, has_pos; /* of the extension */
     unsigned long queries, overlaps, supports, judged, verdicts[VERDICTS];
     double error_sum, error_max; /* metres, of those judged: hits that are hits */
     double *frame[2];            /* nanoseconds of each frame in its fastest pass: pairs apart, pairs that overlap */
 } method_t;
 
-static int evaluate_mpr(const method_t *m, const query_t *q, result_t *out)
+static int evaluate_libccd(const method_t *m, const query_t *q, result_t *out)
 {
-    (void)m;
-    return ccdMPRPenetration(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
-}
-
-static int evaluate_gjk(const method_t *m, const query_t *q, result_t *out)
-{
-    (void)m;
-    return ccdGJKPenetration(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
+    return m->libccd(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
 }
 
 enum { SUPPORT_POINTS = 8 };
@@ -95,8 +89,8 @@ static int evaluate_extension(const method_t *m, const query_t *q, result_t *out
 /* Support points are first; the table leaves them out. */
 static method_t method[] = {
     {.name = "support points", .evaluate = evaluate_supports},
-    {.name = "MPR", .evaluate = evaluate_mpr},
-    {.name = "GJK + EPA", .evaluate = evaluate_gjk},
+    {.name = "MPR", .evaluate = evaluate_libccd, .libccd = ccdMPRPenetration},
+    {.name = "GJK + EPA", .evaluate = evaluate_libccd, .libccd = ccdGJKPenetration},
 #ifdef OURS_ALONE
     {.name = "MPR, no pos", .evaluate = evaluate_extension, .call = CALL_MPR},
     {.name = "MPR, warm", .evaluate = evaluate_extension, .call = CALL_MPR_WARM, .is_warm = 1, .has_pos = 1},
@@ -110,13 +104,13 @@ static method_t method[] = {
 enum { METHODS = sizeof method / sizeof method[0] };
 
 /* Judges one result by the bounds on the signed depth. */
-static void judge(method_t *m, const result_t *result, double lower, double upper)
+static void judge(method_t *m, const result_t *result, const recording_pair_t *pair)
 {
-    const verdict_truth_t truth = {lower, upper, TOLERANCE, CONTACT_EPS};
+    const verdict_truth_t truth = {pair->lower, pair->upper, TOLERANCE, CONTACT_EPS};
     const verdict_answer_t answer = {result->code == 0, 1, (double)result->depth, (double)ccdVec3Len2(&result->dir)};
     const verdict_t v = verdict(&answer, &truth);
     m->queries++;
-    m->overlaps += lower > 0;
+    m->overlaps += pair->lower > 0;
     m->verdicts[v]++;
     if (verdict_has_error(&answer, v)) {
         const double error = verdict_error(&answer, &truth);
@@ -135,18 +129,14 @@ static double process_time(void)
 }
 
 /* Queries the pairs of frame f that overlap, or those that do not, and stores their time if it is the least so far. */
-static void time_frame(const recording_t *r, method_t *m, uint32_t f, size_t first_pair, int overlap, const shape_t *body,
-                       const ccd_t *ccd, result_t *result)
+static void time_frame(const recording_t *r, method_t *m, uint32_t f, const recording_pair_t *pair, int overlap,
+                       const shape_t *body, const ccd_t *ccd, result_t *result)
 {
     double time = process_time();
-    for (uint32_t i = 0; i < r->frame_pairs[f]; i++) {
-        unsigned a, b;
-        double lower, upper;
-        recording_truth(r, first_pair + i, &lower, &upper);
-        if ((lower > 0) != overlap)
+    for (uint32_t i = 0; i < r->frame_pairs[f]; i++, pair++) {
+        if ((pair->lower > 0) != overlap)
             continue;
-        recording_pair(r, f, i, &a, &b);
-        const query_t q = {&body[a], &body[b], ccd, a * r->bodies + b};
+        const query_t q = {&body[pair->a], &body[pair->b], ccd, pair->a * r->bodies + pair->b};
         result[i].code = m->evaluate(m, &q, &result[i]);
     }
     time = process_time() - time;
@@ -157,19 +147,16 @@ static void time_frame(const recording_t *r, method_t *m, uint32_t f, size_t fir
 /* Queries every pair; the first pass is judged. */
 static void replay_pass(const recording_t *r, method_t *m, int is_first, shape_t *body, result_t *result)
 {
-    size_t k = 0;
+    const recording_pair_t *pair = r->pair;
     ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = (ccd_real_t)TOLERANCE;
     ccd.max_iterations = 500;
-    for (uint32_t f = 0; f < r->frames; k += r->frame_pairs[f++]) {
+    for (uint32_t f = 0; f < r->frames; pair += r->frame_pairs[f++]) {
         recording_place(r, f, body);
-        time_frame(r, m, f, k, 1, body, &ccd, result);
-        time_frame(r, m, f, k, 0, body, &ccd, result);
-        for (uint32_t i = 0; is_first && i < r->frame_pairs[f]; i++) {
-            double lower, upper;
-            recording_truth(r, k + i, &lower, &upper);
-            judge(m, &result[i], lower, upper);
-        }
+        time_frame(r, m, f, pair, 1, body, &ccd, result);
+        time_frame(r, m, f, pair, 0, body, &ccd, result);
+        for (uint32_t i = 0; is_first && i < r->frame_pairs[f]; i++)
+            judge(m, &result[i], &pair[i]);
         for (uint32_t i = 0; is_first && i < r->bodies; i++)
             m->supports += body[i].calls;
     }
@@ -235,18 +222,15 @@ static int certify(const recording_t *r, size_t stride, shape_t *body)
     for (uint32_t f = 0; f < r->frames; f++) {
         recording_place(r, f, body);
         for (uint32_t i = 0; i < r->frame_pairs[f]; i++, k++) {
-            unsigned a, b;
-            double lower, upper;
+            const recording_pair_t *p = &r->pair[k];
             if (k % stride)
                 continue;
-            recording_pair(r, f, i, &a, &b);
-            recording_truth(r, k, &lower, &upper);
-            truth_t t = truth_depth_within(&body[a], &body[b], 1e-10);
+            truth_t t = truth_depth_within(&body[p->a], &body[p->b], 1e-10);
             checked++;
-            widest = fmax(widest, upper - lower);
+            widest = fmax(widest, p->upper - p->lower);
             /* both intervals contain the same number */
-            if (!(lower <= t.depth + 1e-12 && t.lower <= upper + 1e-12)) {
-                printf("pair %zu: recorded %.17g to %.17g, truth %.17g to %.17g\n", k, lower, upper, t.lower, t.depth);
+            if (!(p->lower <= t.depth + 1e-12 && t.lower <= p->upper + 1e-12)) {
+                printf("pair %zu: recorded %.17g to %.17g, truth %.17g to %.17g\n", k, p->lower, p->upper, t.lower, t.depth);
                 wrong++;
             }
         }
