@@ -23,9 +23,9 @@ use crate::math::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     /// Largest error of the depth, metres; not negative and not NaN, but possibly infinite. Solvers clamp it
-    /// ([`Scale::tolerance`](crate::minkowski::tolerance::Scale::tolerance)).
+    /// (`Scale::tolerance`).
     pub tolerance: f64,
-    /// Limit on the iterations of a query, all stages together; at most [`ITERATION_CAP`](crate::math::ITERATION_CAP).
+    /// Limit on the iterations of a query, all stages together; at most `ITERATION_CAP`.
     /// An iteration is a support point after the first tetrahedron or portal: one that expands a polytope, or that
     /// refines or confirms a face in the local search. In `along`, `planar` and `incremental` it is a step of portal
     /// discovery or refinement, or a change of the ray; in a distance any support point, and the depth of objects

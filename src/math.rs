@@ -53,7 +53,7 @@ pub fn unit(v: &Vec3) -> Option<Vec3> {
     normalise_unscaled(v).or_else(|| normalise_unscaled(&(v / max_abs(v))))
 }
 
-/// Returns `v / |v|`; `None` if |v|² under- or overflows. Faster than [`unit`], which scales such vectors.
+/// Returns `v / |v|`; `None` if |v|² under- or overflows. Faster than [`unit()`], which scales such vectors.
 #[inline(always)]
 pub fn normalise_unscaled(v: &Vec3) -> Option<Vec3> {
     let n2 = v.norm_squared();

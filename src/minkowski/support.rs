@@ -27,7 +27,7 @@ impl<F: Fn(&Vec3) -> Vec3> SupportMap for F {
 pub struct SupportPoint {
     /// `v1 - v2`, a boundary point of D.
     pub v: Vec3,
-    /// The support point of obj1 along the queried direction.
+    /// The support point of obj1 along the evaluated direction.
     pub v1: Vec3,
     /// The support point of obj2 along the opposite direction.
     pub v2: Vec3,
@@ -85,7 +85,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
     /// obj2 along `-dir`.
     ///
     /// # Errors
-    /// [`Fault::NonFinite`].
+    /// `Fault::NonFinite`.
     #[inline]
     pub fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
         self.calls.set(self.calls.get() + 2);

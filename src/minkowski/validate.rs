@@ -31,16 +31,16 @@ const ROUNDING_ULPS: f64 = 32.0;
 /// Result of [`check`](crate::check). Lengths are metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Check {
-    /// A point or the center is not finite; nothing else is tested then.
+    /// True if a point or the center is not finite; nothing else is tested then.
     pub not_finite: bool,
-    /// The points are the farthest ones along the opposite direction: a sign is wrong.
+    /// True if the points are the farthest ones along the opposite direction: a sign is wrong.
     pub opposite: bool,
-    /// A point is beyond the support plane of another direction by more than rounding: a wrong
+    /// True if a point is beyond the support plane of another direction by more than rounding: a wrong
     /// frame, points of another object, a search that stops too early, or single precision.
     pub contradicts: bool,
-    /// The same direction returns another point later: the point depends on earlier calls.
+    /// True if the same direction returns another point later: the point depends on earlier calls.
     pub changes: bool,
-    /// The center is outside: queries then miss overlaps and report overlaps of shapes that are apart.
+    /// True if the center is outside: queries then miss overlaps, and report overlaps of separated shapes.
     pub center_outside: bool,
     /// Approximate greatest width of the shape.
     pub size: f64,

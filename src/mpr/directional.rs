@@ -8,7 +8,7 @@
 //! intersection of the ray and the portal, which is inscribed in D, minus the rounding error; it is valid once the
 //! origin is known to be in D.
 //!
-//! Departures: those of [`gao`]. The bounds are measured along the ray.
+//! Departures: those of [`crate::mpr::gao`]. The bounds are measured along the ray.
 //!
 //! Outputs. `limit` is set if the bounds differ by more than the effective tolerance, whatever ended the search. The
 //! overlap is not proven here.

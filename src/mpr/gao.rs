@@ -44,7 +44,7 @@ const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 /// changes, for tests.
 ///
 /// # Errors
-/// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
+/// `Stop::Separated`; `Stop::Fault` for a point that is not finite.
 pub fn penetration<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
@@ -515,7 +515,7 @@ mod tests {
             unit(&(v - self.center).component_div(&r2)).unwrap()
         }
 
-        /// Returns the point where the ray from the origin along `d` leaves: the root t > 0 of g(t d).
+        /// Returns the point at which the origin ray along `d` leaves the ellipsoid: the root t > 0 of g(t d).
         fn exit(&self, d: &Vec3) -> Vec3 {
             let d_ = d.component_div(&self.radii);
             let c = self.center.component_div(&self.radii);
@@ -648,7 +648,7 @@ mod tests {
     /// Started at a maximum, along its own support point, the search perturbs the direction.
     #[test]
     fn a_maximum_is_left() {
-        // A ball on the axis of a capsule: 1.3 along the axis, 1.0 across it.
+        // A ball on the axis of a capsule: depth 1.3 along the axis, 1.0 perpendicular to it.
         let md = difference(
             ball(Vec3::zeros(), 0.5),
             capsule(Vec3::z() * -0.5, Vec3::z() * 0.5, 0.5),
@@ -679,7 +679,7 @@ mod tests {
             points.push(Vec3::new(t, 0.0, s));
         }
         let md = difference(hull(&points), hull(&points));
-        // Of the icosahedron with edge 2: the distance between two opposite faces.
+        // The inradius of an icosahedron with edge 2.
         let inradius = (3.0 as f64).sqrt() * (3.0 + (5.0 as f64).sqrt()) / 6.0;
         for v in &points {
             let hit = solve(&md, unit(v).unwrap(), Until::Shortcut, |_| ());

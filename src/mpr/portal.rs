@@ -78,13 +78,14 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<Option<[Vertex; 3]>, Stop> {
     let mut v1 = set.farthest_vertex(ray);
     let mut v2: Option<Vertex> = None;
-    // Perpendicular to the ray, from v1 or from the edge v1 v2 towards it.
-    let mut perpendicular = ray * v1.w.dot(ray) - v1.w;
-    let mut height = perpendicular.dot(&v1.w);
+    // Perpendicular to the ray, from v1 or from the edge v1 v2 to it.
+    let mut towards_ray = ray * v1.w.dot(ray) - v1.w;
+    // The height of v1 and v2 along `towards_ray`, at most 0.
+    let mut height = towards_ray.dot(&v1.w);
     if !(-height > 0.5 * gap * length) {
         match ring(query, set, ray, ring_tilt)? {
-            Ok(portal) => return Ok(Some(portal)),
-            Err(axis) => (perpendicular, height) = (axis, 0.0),
+            None => (towards_ray, height) = (perpendicular(ray), 0.0),
+            portal => return Ok(portal),
         }
     }
     let tiny = 1e-12 * query.scale.size2();
@@ -92,26 +93,26 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     let mut failures = 0;
     for _ in 0..MAX_STEPS {
         // Closer to the ray than v1 and v2.
-        let is_closer = |w: &Vec3| perpendicular.dot(w) > 0.999 * height + tiny;
-        let mut next = set.farthest_vertex(&perpendicular);
+        let is_closer = |w: &Vec3| towards_ray.dot(w) > 0.999 * height + tiny;
+        let mut next = set.farthest_vertex(&towards_ray);
         if !is_closer(&next.w) {
             if set.is_full() {
                 return Ok(None);
             }
             let edge = v2.map_or(0.0, |v2| (v2.w - v1.w).norm());
-            let n = discovery_dir(&query.upper, &perpendicular, height, edge, length, failures);
+            let n = discovery_dir(&query.upper, &towards_ray, height, edge, length, failures);
             let Some(n) = normalise_unscaled(&n) else {
                 return Ok(None);
             };
             let sample = query.evaluate(set, &n)?;
-            let sample_height = perpendicular.dot(&sample.w);
+            let sample_height = towards_ray.dot(&sample.w);
             if !(sample_height > 0.0) {
                 if failures >= MAX_TILTS {
                     return Ok(None);
                 }
                 failures += 1;
             }
-            if sample_height > perpendicular.dot(&next.w) {
+            if sample_height > towards_ray.dot(&next.w) {
                 next = sample.vertex();
             }
             if !is_closer(&next.w) {
@@ -126,18 +127,18 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
                 } else if side * ray.dot(&next.w.cross(&v1.w)) < 0.0 {
                     *v2 = next;
                 } else {
-                    let is_beyond = perpendicular.dot(&next.w) > 0.0;
+                    let is_beyond = towards_ray.dot(&next.w) > 0.0;
                     let [first, second] = if side > 0.0 { [v1, *v2] } else { [*v2, v1] };
                     return Ok(is_beyond.then_some([first, second, next]));
                 }
                 v2
             }
         };
-        perpendicular = ray.cross(&(v2.w - v1.w));
-        height = perpendicular.dot(&v1.w);
+        towards_ray = ray.cross(&(v2.w - v1.w));
+        height = towards_ray.dot(&v1.w);
         side = 1.0;
         if height > 0.0 {
-            (perpendicular, height, side) = (-perpendicular, -height, -1.0);
+            (towards_ray, height, side) = (-towards_ray, -height, -1.0);
         }
     }
     Ok(None)
@@ -175,8 +176,7 @@ fn discovery_dir(
 }
 
 /// Evaluates three directions around a ray that passes through its own support point, tilted by the tangent `tilt`.
-/// Returns their points as a portal. The inner `Err` is an axis perpendicular to the ray, for a discovery along it: the
-/// set is full, or the three points are nearly on a line.
+/// Returns their points as a portal; `None` if the set is full, or if the three points are nearly on a line.
 #[cold]
 #[inline(never)]
 fn ring<A: SupportMap, B: SupportMap, const N: usize>(
@@ -184,7 +184,7 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     ray: &Vec3,
     tilt: f64,
-) -> Result<Result<[Vertex; 3], Vec3>, Stop> {
+) -> Result<Option<[Vertex; 3]>, Stop> {
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
@@ -194,7 +194,7 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let mut corners = [Vertex::default(); 3];
     for (corner, turn) in corners.iter_mut().zip(turns) {
         if set.is_full() {
-            return Ok(Err(e1));
+            return Ok(None);
         }
         let n = ray + (e1 * turn[0] + e2 * turn[1]) * tilt;
         *corner = query.evaluate(set, &(n / n.norm()))?.vertex();
@@ -202,7 +202,7 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
     let normal = x.cross(&y);
     let is_wide = normal.norm_squared() > 0.01 * x.norm_squared() * y.norm_squared();
-    Ok(if is_wide { Ok(corners) } else { Err(e1) })
+    Ok(is_wide.then_some(corners))
 }
 
 /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
