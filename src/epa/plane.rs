@@ -8,8 +8,8 @@
 //! origin has the same error. [`crate::epa::polytope`] adds to it what interpolation rounds.
 //!
 //! The arithmetic is on pairs of numbers, which the compiler turns into packed instructions. With scalar
-//! expressions it pairs other numbers and stores planes in pieces. (Measured, rustc 1.85, x86-64: 10 to 17 % more
-//! instructions for a whole query.)
+//! expressions it pairs other numbers and stores planes in pieces. Measured: 10 to 17 % more instructions for a whole
+//! query.
 
 use crate::math::{Vec3, larger, lesser};
 
