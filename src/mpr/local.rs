@@ -344,11 +344,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     return Ok((step, face));
                 }
                 self.fit.update(self.set, self.query.upper.index);
-                let mut prediction = if along_normal {
-                    None
-                } else {
-                    self.predict(&face)
-                };
+                let mut prediction = (!along_normal).then(|| self.predict(&face)).flatten();
                 if let Some(p) = prediction.take_if(|p| !self.has_gain(p, tolerance)) {
                     if self.is_upper_bound(&p, tolerance) {
                         return Ok((WalkStep::Fit(p.model), face));
@@ -735,13 +731,13 @@ mod tests {
         let tolerance = SETTINGS.tolerance;
         let h = |n: &Vec3| n.dot(&md.support(n).unwrap().v);
         assert!((h(&hit.dir) - hit.depth).abs() <= 64.0 * EPSILON);
-        let difference_of_points = hit.point1 - hit.point2;
-        let along = difference_of_points.dot(&hit.dir);
+        let w = hit.point1 - hit.point2;
+        let along = w.dot(&hit.dir);
         assert!(
             (along - hit.depth).abs() <= 1.5 * tolerance,
             "{along} {hit:?}"
         );
-        let across = (difference_of_points - hit.dir * along).norm();
+        let across = (w - hit.dir * along).norm();
         let most = (2.0 * hit.depth * tolerance).sqrt() + tolerance;
         assert!(across <= 1.5 * most, "{across} {most} {hit:?}");
         for step in [1e-3, 0.01, 0.02, 1.0] {

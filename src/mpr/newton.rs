@@ -59,11 +59,8 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
         let x = dir_change(k);
         x1.perp(&x).powi(2) > 0.1 * x.norm_squared() * x1.norm_squared()
     })?;
-    let (x2, y1, y2) = (
-        dir_change(second),
-        vertex_change(first),
-        vertex_change(second),
-    );
+    let x2 = dir_change(second);
+    let [y1, y2] = [first, second].map(vertex_change);
     let slope =
         Matrix2::from_columns(&[y1, y2]) * Matrix2::from_columns(&[x1, x2]).try_inverse()?;
     let curvature = (slope + slope.transpose()) * 0.5;
