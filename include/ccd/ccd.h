@@ -74,8 +74,8 @@ CCD_EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *c
  * epa_tolerance. Calls first_dir, no center.
  *
  * depth: metres. dir: unit. pos: the contact position, the center of pressure. Each may be NULL.
- * Reads epa_tolerance; after 320 support points or max_iterations iterations depth is a sound
- * upper bound. Allocates, and frees before it returns, only if the minimum is (nearly) not
+ * Reads epa_tolerance; if 320 support points or max_iterations are used up first, depth is an
+ * upper bound of the least depth. Allocates, and frees before it returns, only if the minimum is (nearly) not
  * unique, as for coaxial cylinders and concentric spheres.
  * Returns  0 when the objects overlap;
  *         -1 when they are apart or touch within rounding, when a required callback is NULL or a

@@ -67,15 +67,15 @@ struct Vec3 {
 /** Result of a query. */
 enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
-    limit = CCD_LIMIT,         /**< less exact than the tolerance: max_iterations or the library's cap came first */
+    limit = CCD_LIMIT,         /**< overlap, less exact than requested, see CCD_LIMIT */
     miss = CCD_MISS,           /**< apart */
     no_memory = CCD_NO_MEMORY, /**< an allocation failed */
-    bad_input = CCD_BAD_INPUT  /**< a tolerance, a direction or a point is NaN or infinite */
+    bad_input = CCD_BAD_INPUT  /**< an argument or a point is invalid, see CCD_BAD_INPUT */
 };
 
 /** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */
 enum Want : unsigned {
-    want_pos = CCD_WANT_POS,       /**< pos: costs 2 to 4 calls of support(), 8 at most */
+    want_pos = CCD_WANT_POS,       /**< pos: costs 2 to 4 support points, at most 8 */
     want_points = CCD_WANT_POINTS, /**< point1 and point2: cost nothing */
     want_all = CCD_WANT_ALL        /**< everything */
 };

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* The queries of warm.h for programs on FCL 0.7, with a state for each pair of objects: header
- * only, C++11, for FCL in double or float on this library in double or float (results are
- * as exact as the coarser of the two).
+ * only, C++11, for FCL and this library each in double or float (results are as exact as
+ * the coarser of the two).
  *
  *     ccd_fcl::PairCache cache;                      // kept between frames, one for each thread
  *     ...

@@ -16,9 +16,8 @@ extern "C" {
 #endif
 
 /**
- * Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with its
- * shortcut: the next ray starts as soon as a support value is below the portal's distance. The
- * result is sound: depth is the least support value evaluated, and an overlap is
+ * Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
+ * shortcut of its Section III-C. The result is sound: depth is the least support value evaluated, and an overlap is
  * proven.
  *
  * `warm`: may be NULL. `want`: CCD_WANT_ flags.

@@ -28,8 +28,8 @@
  * Lengths and tolerances are metres. Tolerances are raised to a few units in the last place of the
  * coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D. A call reads only
  * the tolerance that it names. max_iterations limits the support points of a query after the first
- * tetrahedron, all stages together; the library's own limit is 380, and no query takes more than 400
- * support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
+ * tetrahedron, all stages together; the library's own limits are 160, 320 for proofs and
+ * 380 for distances, and no query takes more than 400 support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
  * re-entrant and keep no data except the caller's state.
  *
  * All statements assume convex objects and support functions that return a farthest point. If points
@@ -134,7 +134,7 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 
 /**
  * Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
- * Evaluates the two support functions separately.
+ * May call one support function without the other.
  */
 #define CCD_WANT_POS 1
 
@@ -159,8 +159,8 @@ typedef struct ccd_penetration_t {
   ccd_real_t depth;
   /**
    * Lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along dir),
-   * metres; 0 if there is none. Proven if the centers lie in their objects; ccdPenetrationProven
-   * and ccdPenetrationAlong do not rely on them.
+   * metres; 0 if there is none. Proven if the centers lie in their objects; only
+   * ccdPenetrationProven does not rely on them.
    */
   ccd_real_t depth_lower;
   /**
@@ -207,7 +207,8 @@ typedef struct ccd_penetration_t {
  *
  * `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
  * point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for only depth, bound
- * and directions. Centers save support points; depth_lower relies on them too.
+ * and directions. Centers save support points; overlap and depth_lower rely on
+ * them.
  *
  * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
  * depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.
@@ -544,7 +545,7 @@ int ccdMPRIntersectWarm(const void *obj1,
 #define CCD_CHECK_CHANGES 8
 
 /**
- * The center is outside the object. The MPR calls and ccdPenetration then miss overlaps, and
+ * The center is outside the object. Calls that rely on it may miss overlaps, and
  * report overlaps of objects that are apart.
  */
 #define CCD_CHECK_CENTER_OUTSIDE 16

@@ -28,8 +28,8 @@
 //! Lengths and tolerances are metres. Tolerances are raised to a few units in the last place of the
 //! coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D. A call reads only
 //! the tolerance that it names. max_iterations limits the support points of a query after the first
-//! tetrahedron, all stages together; the library's own limit is 380, and no query takes more than 400
-//! support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
+//! tetrahedron, all stages together; the library's own limits are 160, 320 for proofs and
+//! 380 for distances, and no query takes more than 400 support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
 //! re-entrant and keep no data except the caller's state.
 //!
 //! All statements assume convex objects and support functions that return a farthest point. If points

@@ -22,7 +22,7 @@ pub const CCD_CHECK_OPPOSITE: c_int = 2;
 pub const CCD_CHECK_CONTRADICTS: c_int = 4;
 /// The same direction returns another point later: the point depends on earlier calls.
 pub const CCD_CHECK_CHANGES: c_int = 8;
-/// The center is outside the object. The MPR calls and ccdPenetration then miss overlaps, and
+/// The center is outside the object. Calls that rely on it may miss overlaps, and
 /// report overlaps of objects that are apart.
 pub const CCD_CHECK_CENTER_OUTSIDE: c_int = 16;
 /// `center` is NULL. Calls with MPR in their name require it, others do not.

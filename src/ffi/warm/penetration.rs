@@ -15,7 +15,7 @@ use crate::minkowski::query::{Stop, if_overlapping};
 use crate::query::{Pair, warm_start::WarmStart};
 
 /// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
-/// Evaluates the two support functions separately.
+/// May call one support function without the other.
 pub const CCD_WANT_POS: c_uint = 1;
 /// Requests point1 and point2, at no cost.
 pub const CCD_WANT_POINTS: c_uint = 2;
@@ -30,8 +30,8 @@ pub struct ccd_penetration_t {
     /// support value of normal, divided by dir . normal.
     pub depth: Real,
     /// Lower bound of the globally least depth (in ccdPenetrationAlong: of the depth along dir),
-    /// metres; 0 if there is none. Proven if the centers lie in their objects; ccdPenetrationProven
-    /// and ccdPenetrationAlong do not rely on them.
+    /// metres; 0 if there is none. Proven if the centers lie in their objects; only
+    /// ccdPenetrationProven does not rely on them.
     pub depth_lower: Real,
     /// Penetration direction, unit: obj2 moves along it.
     pub dir: ccd_vec3_t,
@@ -155,7 +155,8 @@ pub(in crate::ffi) unsafe fn fill(
 ///
 /// `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
 /// point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for only depth, bound
-/// and directions. Centers save support points; depth_lower relies on them too.
+/// and directions. Centers save support points; overlap and depth_lower rely on
+/// them.
 ///
 /// Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
 /// depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.
