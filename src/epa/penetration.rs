@@ -9,7 +9,8 @@
 //!    support points along the ray and opposite to it, which is always in D.
 //! 3. *Portal*: discovery and refinement ([`crate::mpr::portal`]).
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
-//!    is the upper bound less the allowed gap, the minimum is proven. Most shallow contacts end here.
+//!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
+//!    proven. Most shallow contacts end here.
 //! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron; if it does not come to contain the origin, from
 //!    the points farthest from a point, a line and a plane; then from the tetrahedron of GJK. Full buffers are replaced
 //!    by larger ones.
@@ -98,8 +99,8 @@ const ROUNDING_GAP_EPS: f64 = 32.0;
 /// The extent of D, in height epsilons, up to which it counts as flat. Derived as [`ROUNDING_GAP_EPS`].
 const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
 /// The least distance of a known corner of a start from the other corners, in sizes of D. Measured (`cargo test --test
-/// stability` in single precision, `campaigns -- wide` at tolerance 0): if all known corners are accepted, or none, more
-/// proofs end at the support limit.
+/// stability` in single precision, `campaigns -- wide` at tolerance 0): if all known corners are accepted, or none,
+/// more proofs end at the support limit.
 const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The number of iterations above which D counts as curved at the minimum ([`WarmKind::CurvedOverlap`]).
 const MAX_POLYTOPE_ITERATIONS: u64 = 3;
@@ -195,8 +196,9 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     set.push(dir, first);
     let warm = &request.warm;
     let is_warm = warm.kind == WarmKind::Overlap;
-    // The ray is evaluated too if the warm direction is only a guess (its depth is 0), if its support value is more than
-    // twice the last depth, or if both objects are round, where its vertex is a poor corner of a portal. Negated for NaN.
+    // The ray is evaluated too if the warm direction is only a guess (its depth is 0), if its support value is more
+    // than twice the last depth, or if both objects are round, where its vertex is a poor corner of a portal. Negated
+    // for NaN.
     let is_round = warm.radius[0] * warm.radius[1] > 0.0;
     if is_warm && (is_round || !(query.upper.depth <= 2.0 * warm.depth)) {
         query.evaluate(set, &request.ray)?;
@@ -272,8 +274,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     }
 
     /// Sets the interior point to the middle of the support points along the ray and opposite to it, and `ray` to the
-    /// direction from there to the origin. Returns the opposite direction and its point, which are removed from the set:
-    /// as a corner the point would make the portal wide.
+    /// direction from there to the origin. Returns the opposite direction and its point, which are removed from the
+    /// set: as a corner the point would make the portal wide.
     fn find_interior<const N: usize>(
         &mut self,
         set: &mut VertexSet<N>,
@@ -489,8 +491,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.expand_in(set, corners, polytope, start, false, false)
     }
 
-    /// Expands a polytope from a tetrahedron in these buffers, and writes the result unless the expansion is to continue
-    /// in larger ones.
+    /// Expands a polytope from a tetrahedron in these buffers, and writes the result unless the expansion is to
+    /// continue in larger ones.
     #[inline(always)]
     fn expand_in<const N: usize, const C: usize, const F: usize>(
         &mut self,

@@ -23,7 +23,8 @@ pub const PLANE_ERROR_ULPS: f64 = 8.0;
 /// The least six-fold volume of a tetrahedron, in ulps of the cube of its longest edge L. Derived: the normal of a
 /// face, before it is normalised, has an error of 6 ulps of L². For a face of area A and a height H of the tetrahedron
 /// above it, the plane is then off by 6 ulps · L³ / (2 A) in the distance L, and the middle of the tetrahedron is H / 4
-/// below it. The error is at most half of that if 2 A H, the six-fold volume, is at least 48 ulps of L³; 64 leaves a reserve.
+/// below it. The error is at most half of that if 2 A H, the six-fold volume, is at least 48 ulps of L³; 64 leaves a
+/// reserve.
 const MIN_VOLUME_ULPS: f64 = 64.0;
 
 /// A pair of numbers for packed arithmetic.
@@ -149,6 +150,7 @@ impl Tetrahedron {
     #[inline(always)]
     pub fn new([o, mut a, mut b, c]: [Vec3; 4], ulp: f64) -> Option<Self> {
         let extent = MIN_EXTENT_ULPS * ulp;
+        // The edges from o to a, b and c.
         let (e, f, g) = (a - o, b - o, c - o);
         let base = e.cross(&f);
         let volume = base.dot(&g);

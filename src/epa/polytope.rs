@@ -7,8 +7,8 @@
 //! # Insertion by interpolation
 //!
 //! A new point p replaces the *visible* faces, whose planes it is above, by a fan over their *horizon*. A
-//! horizon edge is between a visible face F, whose plane is f > 0 below p, and a hidden face G, for which the height
-//! of p is g <= 0. Every plane through the edge is a combination of the two, and the one through p is
+//! horizon edge is between a visible face F, above whose plane the height of p is f > 0, and a hidden face G, for which
+//! the height of p is g <= 0. Every plane through the edge is a combination of the two, and the one through p is
 //!
 //!   F′ = F + w (G − F),   w = f / (f − g):   f + w (g − f) = 0.
 //!
@@ -73,8 +73,8 @@ pub const MAX_FACES: usize = 4096;
 const MIN_INTERPOLATED_N2: f64 = 0.01;
 /// The |N|² below which an interpolated plane is not usable: two more digits are lost.
 const MIN_USABLE_N2: f64 = 1e-6;
-/// The largest error up to which a plane may be normalised, in ulps of the size. Insensitive, 1e4 to 1e6 on the recorded
-/// contacts: far below the tolerances at which interpolated planes are used.
+/// The largest error up to which a plane may be normalised, in ulps of the size. Insensitive, 1e4 to 1e6 on the
+/// recorded contacts: far below the tolerances at which interpolated planes are used.
 const MAX_SCALED_ERROR_ULPS: f64 = 1e5;
 /// The error that an insertion adds, in ulps of the size. Derived: two products and their sum round to 2 ulps of the
 /// size, which is ten times as much for |N| = 0.1.
@@ -276,8 +276,8 @@ impl<const F: usize> EpaPolytope<F> {
         };
     }
 
-    /// Returns whether the interior point is below all planes by at least the error, so that the surface winds around it;
-    /// `false` for NaN.
+    /// Returns whether the interior point is below all planes by at least the error, so that the surface winds around
+    /// it; `false` for NaN.
     #[inline(always)]
     pub fn encloses_interior_point(&self) -> bool {
         self.interior_clearance >= self.error
@@ -326,8 +326,8 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Recomputes the keys if planes are exact, since the tolerance is then finer than the error of keys. Returns whether
-    /// a face is closer than `key`; its key is lowered accordingly.
+    /// Recomputes the keys if planes are exact, since the tolerance is then finer than the error of keys. Returns
+    /// whether a face is closer than `key`; its key is lowered accordingly.
     #[inline(always)]
     pub fn refresh_keys(&mut self, key: f64) -> bool {
         !(self.key_error > 0.0) && self.recompute_keys(key)
@@ -347,12 +347,12 @@ impl<const F: usize> EpaPolytope<F> {
         refresh_keys
     }
 
-    /// Inserts the point `p` as the corner with index `id`. `first`: a face that p is above by more than `level`, metres.
-    /// `corner` returns the point of an index. Returns `false` if there is no room for the new faces; the polytope is
-    /// then unchanged.
+    /// Inserts the point `p` as the corner with index `id`. `first`: a face that p is above by more than `level`,
+    /// metres. `corner` returns the point of an index. Returns `false` if there is no room for the new faces; the
+    /// polytope is then unchanged.
     ///
-    /// As long as the horizon is not a single closed loop, the height above which a face counts as visible is multiplied
-    /// by eight, until only `first` is visible.
+    /// As long as the horizon is not a single closed loop, the height above which a face counts as visible is
+    /// multiplied by eight, until only `first` is visible.
     #[inline(always)]
     pub fn insert(
         &mut self,
@@ -482,8 +482,8 @@ impl<const F: usize> EpaPolytope<F> {
         self.twins[f][3] = edge as u16;
     }
 
-    /// Returns whether the edges of a fan, from its first half-edge to its last one, are a closed loop. The first and the
-    /// last face are not linked yet.
+    /// Returns whether the edges of a fan, from its first half-edge to its last one, are a closed loop. The first and
+    /// the last face are not linked yet.
     #[cold]
     #[inline(never)]
     fn is_horizon_closed(&self, begin: usize, last: usize) -> bool {
@@ -506,8 +506,8 @@ impl<const F: usize> EpaPolytope<F> {
         ends(last).1 == ends(begin).0
     }
 
-    /// Reverts an insertion: frees the new faces, up to the face `free`, restores the twins, and puts the visible faces,
-    /// from `first` to `tail`, in use again.
+    /// Reverts an insertion: frees the new faces, up to the face `free`, restores the twins, and puts the visible
+    /// faces, from `first` to `tail`, in use again.
     #[cold]
     #[inline(never)]
     fn revert(&mut self, first: usize, tail: usize, free: usize) {
@@ -529,9 +529,10 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Computes the plane of face `f` from its corners, with unit normal and d the least N·corner, and stores it if it has
-    /// the properties that the bound needs; else repairs the interpolated plane (*Cancelled normals* at the head of this
-    /// file). `parent`: the visible face from which the plane was interpolated. Returns the signed squared distance.
+    /// Computes the plane of face `f` from its corners, with unit normal and d the least N·corner, and stores it if it
+    /// has the properties that the bound needs; else repairs the interpolated plane (*Cancelled normals* at the head of
+    /// this file). `parent`: the visible face from which the plane was interpolated. Returns the signed squared
+    /// distance.
     #[cold]
     #[inline(never)]
     fn recompute_plane(&mut self, f: usize, parent: usize, corner: &impl Fn(usize) -> Vec3) -> f64 {
@@ -562,9 +563,9 @@ impl<const F: usize> EpaPolytope<F> {
         plane.signed_square().0
     }
 
-    /// Returns the plane through a face's corners and the distance of the interior point below it, metres. `None` if the
-    /// face has no area above rounding, if the interior point is not below the plane, if the origin is not below the
-    /// plane although it is below `old`, or if the normal is not on the side of `old`'s and that side is known.
+    /// Returns the plane through a face's corners and the distance of the interior point below it, metres. `None` if
+    /// the face has no area above rounding, if the interior point is not below the plane, if the origin is not below
+    /// the plane although it is below `old`, or if the normal is not on the side of `old`'s and that side is known.
     fn plane_through_corners(
         &self,
         f: usize,
@@ -608,8 +609,8 @@ mod tests {
     /// The height above which a point counts as above a face of a polytope of size 1.
     const LEVEL: f64 = 8.0 * EPSILON as f64;
 
-    /// Asserts the invariants: the surface is closed, and all planes are below or at their corners and above the interior
-    /// point.
+    /// Asserts the invariants: the surface is closed, and all planes are below or at their corners and above the
+    /// interior point.
     pub fn check<const F: usize>(hull: &EpaPolytope<F>, points: &[Vec3]) {
         let mut edges = 0;
         for f in hull.faces() {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Support functions, and the Minkowski difference D = obj1 − obj2 that every solver works on
-//! (W. Gao, Sec. II-A and II-B).
+//! (W. Gao, 2023, Sec. II-A and II-B, see [`crate::mpr::gao`]).
 
 use core::cell::Cell;
 

@@ -3,10 +3,9 @@
 
 //! The penetration depth along a direction.
 //!
-//! [`along`] follows the origin ray to the boundary of D (W. Gao, "Efficient Incremental Penetration Depth Estimation
-//! between Convex Geometries", Algorithm 1). Upper bound: the first support plane on the ray. Lower bound: the
-//! intersection of the ray and the portal, which is inscribed in D, minus the rounding error; it is valid once the
-//! origin is known to be in D.
+//! [`along`] follows the origin ray to the boundary of D (W. Gao, 2023, Algorithm 1, see [`crate::mpr::gao`]). Upper
+//! bound: the first support plane on the ray. Lower bound: the intersection of the ray and the portal, which is
+//! inscribed in D, minus the rounding error; it is valid once the origin is known to be in D.
 //!
 //! Departures: those of [`crate::mpr::gao`]. The bounds are measured along the ray.
 //!

@@ -2,16 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The published method: W. Gao, "Efficient Incremental Penetration Depth Estimation between Convex
-//! Geometries". Algorithm 3 and, with the shortcut, Algorithms 4 and 5, for n = 3 and n = 2.
+//! Geometries", 2023, <https://arxiv.org/abs/2304.07357>. Algorithm 3 and, with the shortcut, Algorithms 4
+//! and 5, for n = 3 and n = 2 dimensions.
 //!
 //! 1. *Portal* (Sec. II-C, Algorithm 1): a triangle v1, v2, v3 of support points of D that the origin ray
-//!    {t d, t >= 0} passes through. With T(a, b) = d · (a × b): T(1,2), T(2,3), T(3,1) >= 0, and its normal
-//!    N = v1×v2 + v2×v3 + v3×v1 looks along the ray, N · d >= 0.
-//! 2. *Refinement*: the ray meets the portal at |p| = (n · v1) / (n · d), a lower bound of where it leaves
-//!    D; and the support plane of n at |q| = (n · s(n)) / (n · d), an upper bound. s(n) replaces one vertex.
-//! 3. *Next ray* (Sec. III-B, Algorithm 3): the support plane of n has its closest point to the origin at
-//!    z = h(n) n. The ray n leaves D at or before z, so |z| falls until d and n agree within the tolerance:
-//!    |q| − |z| <= tolerance.
+//!    {t d, t >= 0} crosses. With T(a, b) = d · (a × b): T(1,2), T(2,3), T(3,1) >= 0, and its normal
+//!    N = v1×v2 + v2×v3 + v3×v1 points along the ray, N · d >= 0. n = N / |N|.
+//! 2. *Refinement*: the distance along the ray to the portal, |p| = (n · v1) / (n · d), is a lower bound of the
+//!    distance at which the ray leaves D; that to the support plane of n, |q| = (n · s(n)) / (n · d), is an upper
+//!    bound. s(n) replaces one vertex.
+//! 3. *Next ray* (Sec. III-B, Algorithm 3): the point of the support plane of n that is closest to the origin is
+//!    z = h(n) n. The ray along n leaves D at or before z, so |z| decreases until d and n agree within the
+//!    tolerance: |q| − |z| <= tolerance.
 //! 4. *Shortcut* (Sec. III-C, Algorithms 4 and 5): the ray is left as soon as |z| <= |p|.
 //! 5. *n = 2* (Sec. II-A), for shapes in a plane with unit normal m: the portal is a segment from v1 to v2,
 //!    kept as the triangle v1, v2, v2 + m, which has the segment's normal in the plane.

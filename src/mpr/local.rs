@@ -4,11 +4,12 @@
 //! The local search: finds a local minimum of the penetration depth by a walk from portal to portal on the known
 //! vertices.
 //!
-//! Reference: W. Gao, "Efficient Incremental Penetration Depth Estimation between Convex Geometries", Algorithm 4.
+//! Reference: W. Gao, 2023, Algorithm 4, see [`crate::mpr::gao`].
 //!
-//! Terms. A *ray* starts at the origin of D. The *foot* of a face is the projection of the origin on its plane. The
-//! *valley* of a minimum is the set of directions from which descent of the support function ends in it. The *upper
-//! bound* is the least support value evaluated, with its direction.
+//! Terms. The *inner model* is the hull of the known differences ([`crate::minkowski`]). A *ray* starts at the origin
+//! of D. The *foot* of a face is the projection of the origin on its plane. The *valley* of a minimum is the set of
+//! directions from which descent of the support function ends in it. The *upper bound* is the least support value
+//! evaluated, with its direction.
 //!
 //! 1. *Portal*: find one for the ray ([`discover`]), at first along the start direction, and refine it with known
 //!    differences as long as one is above it. This gives the face of the inner model through which the ray leaves.
@@ -419,9 +420,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         None
     }
 
-    /// Returns the minimum that the sphere fits predict, else the one that Newton's step predicts. Its direction was not
-    /// evaluated yet, or is that of the upper bound. (Measured: if directions may be evaluated again, the longest walks
-    /// of balls and capsules take twice as many support points.)
+    /// Returns the minimum that the sphere fits predict, else the one that Newton's step predicts. Its direction was
+    /// not evaluated yet, or is that of the upper bound. (Measured: if directions may be evaluated again, the longest
+    /// walks of balls and capsules take twice as many support points.)
     fn predict(&self, face: &Face) -> Option<Prediction> {
         let found = self.fit.predict(self.set, &face.corners, &face.normal);
         // Any direction is a minimum of concentric balls.
@@ -959,8 +960,8 @@ mod tests {
         assert!(converged > 5, "{converged}");
     }
 
-    /// A ball that has passed through a plate: along the normal of the side where it was there is a local minimum of the
-    /// support function, but no overlap.
+    /// A ball that has passed through a plate: along the normal of the side where it was there is a local minimum of
+    /// the support function, but no overlap.
     #[test]
     fn a_minimum_of_separated_objects_is_a_miss() {
         let plate = corners(Vec3::new(1.0, 1.0, 0.01));

@@ -7,9 +7,9 @@
 //! fitted to gradients).
 //!
 //! 1. *Gradient*: the support point of the upper bound, less its component along the direction.
-//! 2. *Hessian*: from the two known support points with the closest directions for which D is smooth in between: the
-//!    distances e and f ([`round_fit`](crate::minkowski::round_fit)) of each of the two points below the support
-//!    plane of the other agree within [`SMOOTH_REL_TOL`].
+//! 2. *Hessian*: from the two known support points with the closest directions for which D is smooth between them and
+//!    the support point of the upper bound. Smooth: the distances e and f of two support points below each other's
+//!    support planes ([`round_fit`](crate::minkowski::round_fit)) agree within [`SMOOTH_REL_TOL`].
 //! 3. *Step*: to the minimum of the quadratic model; none if it has no minimum, or if the tangent of the step's angle
 //!    is larger than [`MAX_NEWTON_TAN`].
 //!

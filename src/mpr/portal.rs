@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Portal discovery and refinement on known vertices (G. Snethen, "XenoCollide", Game Programming
-//! Gems 7; W. Gao, "Efficient Incremental Penetration Depth Estimation", Algorithm 1).
+//! Gems 7, 2008; W. Gao, 2023, Algorithm 1, see [`crate::mpr::gao`]).
 //!
 //! The origin ray runs from an interior point of D through the origin. A *portal* is a triangle of points of D that
 //! the ray crosses.
@@ -64,6 +64,8 @@ fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> b
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
 /// metres. `gap`: the allowed difference of the bounds, metres. `ring_tilt`: tangent of the tilt of [`ring`]. The
 /// corners are in the order in which the portal's normal points along the ray. A full set ends the discovery: `None`.
+///
+/// One loop over v1, v2 and the vector from them towards the ray; a split would pass all of them.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
