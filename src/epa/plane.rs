@@ -208,7 +208,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn heights_distances_and_mixtures() {
+    fn heights_distances_and_interpolation() {
         let x = Plane::new(&(Vec3::x() * 2.0), 6.0);
         let y = Plane::new(&Vec3::y(), -1.0);
         assert_eq!(x.height(&Plane::point(&Vec3::new(4.0, 9.0, 9.0))), 2.0);

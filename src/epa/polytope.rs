@@ -735,7 +735,7 @@ mod tests {
 
     /// The first corner is the middle of two later corners.
     #[test]
-    fn an_apex_on_a_segment() {
+    fn an_interior_point_on_a_segment() {
         let mut r = Random::new(3);
         for round in 0..2000 {
             let mut points: Vec<_> = (0..12).map(|_| r.vector(1.0)).collect();

@@ -334,7 +334,7 @@ mod tests {
     use core::cell::Cell;
 
     #[test]
-    fn samples_are_kept_with_the_least_support_value() {
+    fn samples_are_stored_with_the_upper_bound() {
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::x() * 1.5, 1.0));
         let mut query = SupportQuery::new(&md, None);
         let mut set = VertexSet::<4>::EMPTY;
