@@ -3,10 +3,10 @@
 
 //! Settings and results of the solvers, and the contact position.
 //!
-//! All guarantees assume convex objects and support functions that return a farthest point. A contradiction that a
-//! query notices ([`Status::InconsistentSupport`]) sets [`Penetration::limit`]: `depth_lower` is then 0, and `depth`
-//! is the least support value of the points that the support functions returned when each direction was evaluated
-//! twice. Moving obj2 by it need not separate the objects.
+//! All guarantees assume convex objects and support functions that return a farthest point. If the global query
+//! notices that a support function contradicts itself ([`Status::InconsistentSupport`]), it sets
+//! [`Penetration::limit`]: `depth_lower` is then 0, and `depth` is the least support value of the points that the
+//! support functions returned when each direction was evaluated twice. Moving obj2 by it need not separate the objects.
 
 pub mod center_of_pressure;
 pub mod face;
