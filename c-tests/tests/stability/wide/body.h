@@ -39,7 +39,8 @@ typedef struct {
 
 typedef struct {
     part_t part, child;
-    double margin, m[9], at[3], centre[3]; /* the last one in the body's own frame */
+    double margin, rot[9], pos[3];
+    double centre[3]; /* in the local frame */
 } body_t;
 
 static const double nowhere[3] = {0, 0, 0};
@@ -89,7 +90,7 @@ static void wide_farthest(const part_t *s, const quad_t d[3], quad_t o[3])
 #define FN(name) narrow_##name
 #define ROOT sqrt
 #define POWER pow
-#include "local.h"
+#include "support.h"
 #undef REAL
 #undef FN
 #undef ROOT
@@ -98,7 +99,7 @@ static void wide_farthest(const part_t *s, const quad_t d[3], quad_t o[3])
 #define FN(name) wide_##name
 #define ROOT quad_root
 #define POWER powf128
-#include "local.h"
+#include "support.h"
 #undef REAL
 #undef FN
 #undef ROOT
@@ -126,8 +127,8 @@ static void body_centre(const void *obj, ccd_vec3_t *out)
 {
     const body_t *s = (const body_t *)obj;
     for (int i = 0; i < 3; i++)
-        out->v[i] = (ccd_real_t)(s->at[i] + s->m[3 * i] * s->centre[0] + s->m[3 * i + 1] * s->centre[1]
-                                 + s->m[3 * i + 2] * s->centre[2]);
+        out->v[i] = (ccd_real_t)(s->pos[i] + s->rot[3 * i] * s->centre[0] + s->rot[3 * i + 1] * s->centre[1]
+                                 + s->rot[3 * i + 2] * s->centre[2]);
 }
 
 /* --- sizes ------------------------------------------------------------------------ */
@@ -139,7 +140,7 @@ static double body_reach(const body_t *s)
     for (int i = 0; i < 6; i++) {
         double d[3] = {0, 0, 0}, o[3];
         d[i / 2] = i % 2 ? 1 : -1;
-        narrow_body(s, s->at, d, o);
+        narrow_body(s, s->pos, d, o);
         for (int k = 0; k < 3; k++)
             most = fmax(most, fabs(o[k]));
     }
@@ -148,7 +149,7 @@ static double body_reach(const body_t *s)
 
 static double body_farthest(const body_t *s)
 {
-    return sqrt(s->at[0] * s->at[0] + s->at[1] * s->at[1] + s->at[2] * s->at[2]) + body_reach(s);
+    return sqrt(s->pos[0] * s->pos[0] + s->pos[1] * s->pos[1] + s->pos[2] * s->pos[2]) + body_reach(s);
 }
 
 #endif

@@ -64,8 +64,8 @@ static quad_t wide_difference(const body_t *a, const body_t *b, const quad_t n[3
     quad_t m[3], t[3];
     for (int i = 0; i < 3; i++)
         m[i] = -n[i];
-    wide_body(a, a->at, n, s);
-    wide_body(b, a->at, m, t);
+    wide_body(a, a->pos, n, s);
+    wide_body(b, a->pos, m, t);
     quad_less(s, t, s);
     return quad_dot(n, s);
 }

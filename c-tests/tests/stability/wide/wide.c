@@ -99,7 +99,7 @@ static int is_outside(const body_t *s, const double at[3], double bound)
 {
     body_t point;
     memset(&point, 0, sizeof point);
-    memcpy(point.at, at, sizeof point.at);
+    memcpy(point.pos, at, sizeof point.pos);
     return wide_bounds(s, &point, bound / 4, -bound, -bound / 2, 120).upper < -bound;
 }
 
@@ -227,9 +227,9 @@ static void print_body(const char *name, const body_t *s)
 {
     printf("  %s: part %d (%.17g, %.17g, %.17g, %.17g) points %d child %d (%.17g, %.17g, %.17g) margin %.17g at (%.17g, %.17g, %.17g) m",
            name, (int)s->part.kind, s->part.p[0], s->part.p[1], s->part.p[2], s->part.p[3], s->part.count, (int)s->child.kind,
-           s->child.p[0], s->child.p[1], s->child.p[2], s->margin, s->at[0], s->at[1], s->at[2]);
+           s->child.p[0], s->child.p[1], s->child.p[2], s->margin, s->pos[0], s->pos[1], s->pos[2]);
     for (int i = 0; i < 9; i++)
-        printf(" %.17g", s->m[i]);
+        printf(" %.17g", s->rot[i]);
     printf("\n");
 }
 

@@ -89,7 +89,7 @@ static void FN(body)(const body_t *s, const double origin[3], const REAL d[3], R
     REAL e[3], x[3], t[3], l;
     int k;
     for (int i = 0; i < 3; i++)
-        e[i] = s->m[i] * d[0] + s->m[3 + i] * d[1] + s->m[6 + i] * d[2];
+        e[i] = s->rot[i] * d[0] + s->rot[3 + i] * d[1] + s->rot[6 + i] * d[2];
     FN(part)(&s->part, e, x);
     if (s->child.kind != PART_POINT) {
         FN(part)(&s->child, e, t);
@@ -102,6 +102,6 @@ static void FN(body)(const body_t *s, const double origin[3], const REAL d[3], R
             x[i] += s->margin * e[i] / l;
     }
     for (int i = 0; i < 3; i++)
-        for (o[i] = (REAL)s->at[i] - origin[i], k = 0; k < 3; k++)
-            o[i] += s->m[3 * i + k] * x[k];
+        for (o[i] = (REAL)s->pos[i] - origin[i], k = 0; k < 3; k++)
+            o[i] += s->rot[3 * i + k] * x[k];
 }
