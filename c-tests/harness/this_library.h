@@ -37,7 +37,6 @@ OTHER_CALLS(DECLARE)
 #endif
 #endif
 
-/* The calls by number. */
 enum {
 #define CALL_NUMBER(name, word, kind, traits) CALL_##word,
     PAIR_CALLS(CALL_NUMBER)
@@ -99,6 +98,7 @@ typedef struct {
 #define PASS_MANIFOLD(f) f(a, b, ccd, x->along, x->slop, x->cache, x->contacts, x->max)
 #define PASS_DISTANCE(f) f(a, b, ccd, x->margin1, x->margin2, x->max_distance, x->warm, x->want, x->distance)
 
+/* Calls this library's function of that number. */
 static inline int call_library(int number, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)
 {
     switch (number) {
@@ -108,6 +108,16 @@ static inline int call_library(int number, const void *a, const void *b, const c
 #undef CALL_CASE
     default: return CCD_BAD_INPUT;
     }
+}
+
+/* Calls system libccd's MPR or GJK, where it is linked. */
+static inline int call_libccd(int number, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)
+{
+#ifdef OURS_ALONE
+    return call_library(number, a, b, ccd, x);
+#else
+    return number == CALL_MPR ? PASS_DEPTH(ccdMPRPenetration) : PASS_DEPTH(ccdGJKPenetration);
+#endif
 }
 
 #endif

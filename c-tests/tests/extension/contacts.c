@@ -422,7 +422,7 @@ static void categories(void)
             ccdVec3Set(&n, i / 3 % 3 == 0, i / 3 % 3 == 1, i / 3 % 3 == 2);
         if (i % 3 == 1 && OURS(ccdPenetration)(&s.a, &s.b, &ccd, NULL, 0, &hit) == CCD_HIT)
             n = hit.normal;
-        judge_vec(&n, s.n);
+        to_double(&n, s.n);
         contacts_t c = contacts_at_most(&s, 8);
         check_heights(&s, &c, category_text(category));
         for (int k = 0; k < c.n && i % 3 == 1; k++) {

@@ -83,18 +83,18 @@ static void ask_pair(int category, int i, const pair_t *p, int k)
     const entry_t *e = &entries[k];
     const double tols[2] = {1e-4, tolerance(TOL_TIGHT) * pair_size(&p->a, &p->b)};
     const int tie = p->a.tie;
-    for (int t = 0; t < (e->system ? 1 : 2); t++) {
+    for (int t = 0; t < (e->is_libccd ? 1 : 2); t++) {
         criteria_t q = criteria_of(&p->a, &p->b, tols[t], &p->truth);
-        answer_t x = ask(e, &p->a, &p->b, tols[t], p->truth.n, call_limit(e));
+        answer_t x = call_entry(e, &p->a, &p->b, tols[t], p->truth.n);
         q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(p, tols[t]);
         int faults = judge(e, &x, &p->a, &p->b, &q);
         tally(t ? &fine[tie][k][category] : &table[tie][k][category], &x, faults);
-        if (!e->system && faults & FAULTS_FORBIDDEN & ~shown[tie][k]) {
+        if (!e->is_libccd && faults & FAULTS_FORBIDDEN & ~shown[tie][k]) {
             shown[tie][k] |= faults;
             printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
             print_faulty_answer(e, &x, faults & FAULTS_FORBIDDEN, &p->truth);
-            print_shape(stdout, "  a", &p->a);
-            print_shape(stdout, "  b", &p->b);
+            print_shape("  a", &p->a);
+            print_shape("  b", &p->b);
         }
     }
 }
@@ -114,9 +114,9 @@ static int print_rates(int pairs, int tie)
             int rated = e->call == CALL_MPR || e->call == CALL_GJK || (e->call == CALL_PROVEN && e->state == STATE_NONE);
             if (!rated || !table[tie][k][category].asked)
                 continue;
-            report(e->system ? e->name : e->call == CALL_MPR ? "**our MPR**" : e->call == CALL_GJK ? "**our GJK**" : "**minimum**",
+            report(e->is_libccd ? e->name : e->call == CALL_MPR ? "**our MPR**" : e->call == CALL_GJK ? "**our GJK**" : "**minimum**",
                    category_text(category), &table[tie][k][category]);
-            if (!e->system && e->call == CALL_MPR)
+            if (!e->is_libccd && e->call == CALL_MPR)
                 report("**our MPR, fine**", category_text(category), &fine[tie][k][category]);
             rows++;
         }
@@ -130,12 +130,12 @@ static int print_broken(int pairs, int tie)
     int broken = 0;
     for (int category = 0; category < CATEGORY_COUNT; category++)
         for (int k = 0; k < (int)ENTRIES; k++)
-            if (!entries[k].system && (table[tie][k][category].limit || fine[tie][k][category].limit))
+            if (!entries[k].is_libccd && (table[tie][k][category].limit || fine[tie][k][category].limit))
                 printf("stopped at the cap: %s, %s: %d (default), %d (fine) of %d\n", category_text(category), entries[k].name,
                        table[tie][k][category].limit, fine[tie][k][category].limit, pairs);
     for (int category = 0; category < CATEGORY_COUNT; category++)
         for (int k = 0; k < (int)ENTRIES; k++)
-            for (int i = 0; i < FAULT_BIT_COUNT && !entries[k].system; i++) {
+            for (int i = 0; i < FAULT_BIT_COUNT && !entries[k].is_libccd; i++) {
                 int n = table[tie][k][category].count[i], m = fine[tie][k][category].count[i];
                 if (!(FAULTS_FORBIDDEN >> i & 1) || n + m == 0)
                     continue;
@@ -171,7 +171,7 @@ int main(int argc, char **argv)
             for (int tie = 0; tie < TIES; tie++) {
                 p.a.tie = p.b.tie = tie;
                 for (int k = 0; k < (int)ENTRIES; k++)
-                    if (entries[k].system || entry_in(&entries[k], group))
+                    if (entries[k].is_libccd || entry_in(&entries[k], group))
                         ask_pair(category, i, &p, k);
             }
         }

@@ -51,15 +51,15 @@ static void check(const configuration_t *c)
     }
     for (int i = 0; i < (int)ENTRIES; i++) {
         const entry_t *e = &entries[i];
-        if (!e->system && !entry_in(e, group))
+        if (!e->is_libccd && !entry_in(e, group))
             continue;
         /* libccd is asked as its users do: with its default tolerance */
-        answer_t x = ask(e, &c->a, &c->b, e->system ? 1e-4 : tol, truth.n, call_limit(e));
+        answer_t x = call_entry(e, &c->a, &c->b, e->is_libccd ? 1e-4 : tol, truth.n);
         int faults = judge(e, &x, &c->a, &c->b, &q);
         if (c->missed && x.code != CCD_MISS && e->state != STATE_MARGINS)
             faults |= FAULT_FALSE_HIT;
         describe(&x, text[i]);
-        if (e->system) {
+        if (e->is_libccd) {
             theirs |= faults & ~(FAULT_MISS_SHALLOW | FAULT_MISSED);
             continue;
         }

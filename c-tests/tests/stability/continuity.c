@@ -119,13 +119,13 @@ int main(void)
                 shape_t a, b;
                 ccd_vec3_t unused;
                 pose(&motions[m], f, &a, &b);
-                double tol = e->system ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
+                double tol = e->is_libccd ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
                 truth_t t = truth_depth(&a, &b);
                 criteria_t q = criteria_of(&a, &b, tol, &t);
                 memset(&unused, 0, sizeof unused);
                 ccd_t ccd = counting_query(tol);
                 answer_t x = call_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
-                if (!e->system) {
+                if (!e->is_libccd) {
                     int faults = judge(e, &x, &a, &b, &q);
                     /* the bare local method may be in another valley, and leave it */
                     faults &= FAULTS_FORBIDDEN;
@@ -149,7 +149,7 @@ int main(void)
                         step += (x.pos[i] - last.pos[i]) * (x.pos[i] - last.pos[i]);
                     pos_step = fmax(pos_step, sqrt(step));
                 }
-                if (k == 0 || methods[k - 1].system)
+                if (k == 0 || methods[k - 1].is_libccd)
                     memcpy(place[f], x.pos, sizeof place[f]);
                 for (int i = 0; i < 3; i++)
                     pos_off = fmax(pos_off, fabs(x.pos[i] - place[f][i]));
@@ -157,7 +157,7 @@ int main(void)
                 before = t;
             }
             printf("%-28s %-14s jumps %3d  pos step %.3g  off %.2g\n", motions[m].name, e->name, jumps, pos_step, pos_off);
-            if (!e->system
+            if (!e->is_libccd
                 && ((jumps > 0 && (e->call != CALL_LOCAL || motions[m].face)) || wrong > 0
                     || (motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
                 printf("FAILED the line above\n");

@@ -247,10 +247,10 @@ static int distances(int of_cores)
         ccd_warm_t warm = fresh();
         overlapping(&d, &p, of_cores ? round_kind : any_kind, of_cores ? 2 : 7, 1e-2);
         shape_shift(&p.b, rng_log_uniform(&d, 2e-2, 1) * pair_size(&p.a, &p.b), p.truth.n);
-        judge_size = pair_size(&p.a, &p.b);
+        margin_size = pair_size(&p.a, &p.b);
         supports(CALL_DISTANCE, &p.a, &p.b, &warm);
         cold += supports(CALL_DISTANCE, &p.a, &p.b, NULL);
-        near += supports_as(CALL_DISTANCE, STATE_NEAR, &p.a, &p.b, NULL);
+        near += supports_as(CALL_DISTANCE, STATE_MAX_DISTANCE, &p.a, &p.b, NULL);
         if (of_cores)
             p.a.p[0] = p.b.p[0] = 0;
         other += of_cores ? supports_as(CALL_DISTANCE, STATE_MARGINS, &p.a, &p.b, NULL) : supports(CALL_DISTANCE, &p.a, &p.b, &warm);
@@ -280,10 +280,10 @@ static void on_the_stack(void)
     static answer_t out;
     ccd_vec3_t point;
     if (stack_entry) {
-        ask_once(stack_entry, stack_a, stack_b, &stack_query, stack_warm, stack_dir, &out);
+        call_once(stack_entry, stack_a, stack_b, &stack_query, stack_warm, stack_dir, &out);
     } else {
-        judge_support(stack_a, &stack_along, &point);
-        judge_support(stack_b, &stack_along, &point);
+        counting_support(stack_a, &stack_along, &point);
+        counting_support(stack_b, &stack_along, &point);
     }
 }
 
@@ -314,7 +314,7 @@ static int stack_asks(int class, const entry_t *e)
     switch (class) {
     case STACK_ANY: return 1;
     case STACK_FEW: return entry_is_mpr(e) || e->call == CALL_GJK || e->call == CALL_SEPARATE || e->call == CALL_PROVEN;
-    default: return entry_is_verdict(e);
+    default: return entry_is_boolean(e);
     }
 }
 
@@ -332,7 +332,7 @@ static int stack_of(int class)
         return 0;
     for (i = 0; i < STACK_WORDS; i++)
         stack_floor[i] = paint;
-    judge_limit = no_end;
+    support_call_limit = no_end;
     for (i = 0; i < 2000; i++) {
         category_pair(i % CATEGORY_COUNT, (uint64_t)(i / CATEGORY_COUNT), SHAPE_TIE_SIGN, &p);
         stack_a = &p.a;
@@ -346,17 +346,17 @@ static int stack_of(int class)
         for (int k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
             ccd_warm_t warm = fresh();
-            if (e->system || !stack_asks(class, e))
+            if (e->is_libccd || !stack_asks(class, e))
                 continue;
             stack_entry = e;
             stack_warm = e->state == STATE_NONE ? NULL : &warm;
-            judge_calls = 0;
+            support_calls = 0;
             size_t n = stack_touched();
-            if (e->state == STATE_AGAIN) {
-                judge_calls = 0;
+            if (e->state == STATE_OWN) {
+                support_calls = 0;
                 n = stack_touched();
             }
-            if (class == STACK_FEW && judge_calls > 2 * FEW)
+            if (class == STACK_FEW && support_calls > 2 * FEW)
                 continue;
             n = n > empty ? n - empty : 0;
             most[k] = n > most[k] ? n : most[k];

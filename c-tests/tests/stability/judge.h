@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Asks any entry point of either library one question, and judges the answer by
- * the exact truth. The table of entry points is `entries`; a question that does
- * not come back within a number of support calls, or crashes, is an answer too. */
+/* Calls any entry point of either library, and judges the answer by the exact truth. The
+ * table of entry points is `entries`. An endless loop and a crash are answers too. */
 
 #ifndef STABILITY_JUDGE_H
 #define STABILITY_JUDGE_H
@@ -20,22 +19,22 @@
 #include <stdio.h>
 #include <unistd.h>
 
-/* --- asking ------------------------------------------------------------------ */
+/* --- calling ----------------------------------------------------------------- */
 
-enum { /* what the warm state holds, or how else a distance is asked */
-    STATE_NONE,  /* NULL */
-    STATE_ZERO,  /* all bytes 0 */
-    STATE_AGAIN, /* left by the same question asked a moment ago */
-    STATE_SWAPPED, /* the same of the swapped pair */
-    STATE_AGAINST, /* a guess opposite to the true normal */
-    STATE_BESIDE,  /* one up to 120 degrees off: its coordinates in another order */
-    STATE_MARGINS, /* none: a ball all around each object */
-    STATE_NEAR     /* none: what is farther apart than a part of the size is not refined */
+enum { /* the warm state of a call; of a distance, its arguments */
+    STATE_NONE,    /* NULL */
+    STATE_ZERO,    /* all bytes 0 */
+    STATE_OWN,     /* left by the same call just before */
+    STATE_SWAPPED, /* left by the call with the objects swapped */
+    STATE_OPPOSITE_GUESS, /* a guess opposite to the true normal */
+    STATE_TILTED_GUESS,   /* a guess up to 120 degrees off: the normal's coordinates in another order */
+    STATE_MARGINS,      /* NULL: a margin around each object */
+    STATE_MAX_DISTANCE  /* NULL: no refinement beyond a tenth of the size */
 };
 
 typedef struct {
     const char *name;
-    int system; /* libccd's, else ours */
+    int is_libccd;   /* else this library */
     int call, state; /* call: CALL_ of this_library.h */
 } entry_t;
 
@@ -45,12 +44,12 @@ enum { ANSWER_LOOP = -100, ANSWER_CRASH = -101 };
 typedef struct {
     int code;
     double depth, dir[3], pos[3];
-    int has_pos, has_proof;
-    int touched; /* an output was written though there was no answer */
-    double lower, normal[3], point1[3], point2[3]; /* with has_proof */
-    double distance, margins, near; /* of ccdSignedDistance: the first as it is said, depth and lower without margins */
-    unsigned long calls;                           /* of both support functions */
-    unsigned long supports;                        /* as reported, with has_proof */
+    int has_pos, has_bounds;
+    int wrote_outputs; /* though there was no answer */
+    double lower, normal[3], point1[3], point2[3]; /* with has_bounds */
+    double distance, margins, max_distance; /* of ccdSignedDistance, whose depth and lower are without margins */
+    unsigned long calls;                    /* of both support functions */
+    unsigned long supports;                 /* as reported, with has_bounds */
 } answer_t;
 
 static const entry_t entries[] = {
@@ -69,270 +68,224 @@ static const entry_t entries[] = {
     {"minimum", 0, CALL_PROVEN, STATE_NONE},
     {"along", 0, CALL_ALONG, STATE_NONE},
     {"MPR, zero state", 0, CALL_MPR_WARM, STATE_ZERO},
-    {"MPR, again", 0, CALL_MPR_WARM, STATE_AGAIN},
+    {"MPR, again", 0, CALL_MPR_WARM, STATE_OWN},
     {"MPR, swapped state", 0, CALL_MPR_WARM, STATE_SWAPPED},
-    {"MPR, wrong guess", 0, CALL_MPR_WARM, STATE_AGAINST},
-    {"MPR, guess beside", 0, CALL_MPR_WARM, STATE_BESIDE},
-    {"MPR intersect, again", 0, CALL_MPR_INTERSECT_WARM, STATE_AGAIN},
-    {"penetration, again", 0, CALL_PENETRATION, STATE_AGAIN},
-    {"local, again", 0, CALL_LOCAL, STATE_AGAIN},
+    {"MPR, opposite guess", 0, CALL_MPR_WARM, STATE_OPPOSITE_GUESS},
+    {"MPR, tilted guess", 0, CALL_MPR_WARM, STATE_TILTED_GUESS},
+    {"MPR intersect, again", 0, CALL_MPR_INTERSECT_WARM, STATE_OWN},
+    {"penetration, again", 0, CALL_PENETRATION, STATE_OWN},
+    {"local, again", 0, CALL_LOCAL, STATE_OWN},
     {"local, swapped state", 0, CALL_LOCAL, STATE_SWAPPED},
-    {"local, wrong guess", 0, CALL_LOCAL, STATE_AGAINST},
-    {"local, guess beside", 0, CALL_LOCAL, STATE_BESIDE},
-    {"minimum, again", 0, CALL_PROVEN, STATE_AGAIN},
-    {"minimum, wrong guess", 0, CALL_PROVEN, STATE_AGAINST},
-    {"minimum, guess beside", 0, CALL_PROVEN, STATE_BESIDE},
-    {"along, again", 0, CALL_ALONG, STATE_AGAIN},
+    {"local, opposite guess", 0, CALL_LOCAL, STATE_OPPOSITE_GUESS},
+    {"local, tilted guess", 0, CALL_LOCAL, STATE_TILTED_GUESS},
+    {"minimum, again", 0, CALL_PROVEN, STATE_OWN},
+    {"minimum, opposite guess", 0, CALL_PROVEN, STATE_OPPOSITE_GUESS},
+    {"minimum, tilted guess", 0, CALL_PROVEN, STATE_TILTED_GUESS},
+    {"along, again", 0, CALL_ALONG, STATE_OWN},
     {"distance", 0, CALL_DISTANCE, STATE_NONE},
-    {"distance, again", 0, CALL_DISTANCE, STATE_AGAIN},
-    {"distance, wrong guess", 0, CALL_DISTANCE, STATE_AGAINST},
+    {"distance, again", 0, CALL_DISTANCE, STATE_OWN},
+    {"distance, opposite guess", 0, CALL_DISTANCE, STATE_OPPOSITE_GUESS},
     {"distance, margins", 0, CALL_DISTANCE, STATE_MARGINS},
-    {"distance, if near", 0, CALL_DISTANCE, STATE_NEAR},
+    {"distance, max_distance", 0, CALL_DISTANCE, STATE_MAX_DISTANCE},
 };
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
-/* Is the entry point of this group: "compatible", libccd's or the same with a state; of
- * the extension's own "local", or "proven", which have a lower bound that closes? NULL: any. */
+/* Returns whether the entry point is in this group: "compatible" (libccd's calls and the same with a
+ * state), "local" or "proven" (the extension's calls with a lower bound that closes). NULL: any. */
 static inline int entry_in(const entry_t *e, const char *group)
 {
-    int local = e->call == CALL_LOCAL, proven = e->call == CALL_PROVEN || e->call == CALL_ALONG || e->call == CALL_DISTANCE;
-    return !group || strcmp(group, local ? "local" : proven ? "proven" : "compatible") == 0;
+    const int is_proven = e->call == CALL_PROVEN || e->call == CALL_ALONG || e->call == CALL_DISTANCE;
+    return !group || strcmp(group, e->call == CALL_LOCAL ? "local" : is_proven ? "proven" : "compatible") == 0;
 }
 
-/* Whether the answer claims to be the global minimum within the tolerance. */
+/* Returns whether the depth is the global minimum within the tolerance. */
 static inline int entry_is_minimum(const entry_t *e)
 {
-    return !e->system && (e->call == CALL_GJK || e->call == CALL_SEPARATE || e->call == CALL_PROVEN);
+    return !e->is_libccd && (e->call == CALL_GJK || e->call == CALL_SEPARATE || e->call == CALL_PROVEN);
 }
 
-/* Whether it promises the global minimum within the larger of the tolerance and 0.1 % of the depth. */
+/* Returns whether the depth is the global minimum within the larger of the tolerance and 0.1 % of it. */
 static inline int entry_is_mpr(const entry_t *e)
 {
     return e->call == CALL_MPR || e->call == CALL_MPR_WARM || e->call == CALL_PENETRATION;
 }
 
-static inline int entry_is_verdict(const entry_t *e)
+static inline int entry_is_boolean(const entry_t *e)
 {
-    return e->call == CALL_MPR_INTERSECT || e->call == CALL_GJK_INTERSECT || e->call == CALL_MPR_INTERSECT_WARM || e->call == CALL_INTERSECT;
+    return call_table[e->call].kind == KIND_BOOLEAN || call_table[e->call].kind == KIND_BOOLEAN_WARM;
 }
 
-/* From so many calls of both support functions on it counts as looping: no query is slower. */
+/* From so many calls of both support functions on it counts as an endless loop. */
 static inline unsigned long call_limit(const entry_t *e)
 {
-    if (e->system)
+    if (e->is_libccd)
         return e->call == CALL_MPR ? 40000 : 4000;
     return entry_is_mpr(e) ? 2 * 400 : 2 * 1500;
 }
 
-/* What of an answer is wanted: CCD_WANT_ flags; and the size of the pair, metres. */
-static unsigned wanted_outputs = CCD_WANT_ALL;
-static double judge_size = 1;
+static unsigned wanted_outputs = CCD_WANT_ALL; /* CCD_WANT_ flags */
+static double margin_size = 1; /* the size that margins and largest distances are parts of, metres */
 
-static sigjmp_buf judge_back;
-static volatile unsigned long judge_calls, judge_limit;
+static sigjmp_buf before_call;
+static volatile unsigned long support_calls, support_call_limit;
 
-static inline void judge_count(void)
+static inline void counting_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
-    if (++judge_calls > judge_limit)
-        siglongjmp(judge_back, ANSWER_LOOP);
-}
-
-static inline void judge_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
-{
-    judge_count();
+    if (++support_calls > support_call_limit)
+        siglongjmp(before_call, ANSWER_LOOP);
     shape_support(obj, dir, out);
 }
 
-static void judge_signal(int number)
+static void leave_call(int number)
 {
-    siglongjmp(judge_back, number == SIGALRM ? ANSWER_LOOP : ANSWER_CRASH);
+    siglongjmp(before_call, number == SIGALRM ? ANSWER_LOOP : ANSWER_CRASH);
 }
 
-/* Crashes and endless loops become answers from here on. A loop without support
- * calls is ended by an alarm. */
+/* Turns crashes and endless loops into answers from here on. An alarm ends a loop without
+ * support calls. */
 static inline void catch_crashes(void)
 {
     static const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM};
     struct sigaction action;
     memset(&action, 0, sizeof action);
-    action.sa_handler = judge_signal;
+    action.sa_handler = leave_call;
     action.sa_flags = SA_NODEFER;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         sigaction(numbers[i], &action, NULL);
 }
 
-/* Outputs hold this until they are written. */
-static const unsigned char judge_blank = 0xa5;
-
-static inline int judge_is_blank(const void *memory, size_t size)
-{
-    const unsigned char *byte = (const unsigned char *)memory;
-    for (size_t i = 0; i < size; i++)
-        if (byte[i] != judge_blank)
-            return 0;
-    return 1;
-}
-
-static inline void judge_vec(const ccd_vec3_t *v, double out[3])
+static inline void to_double(const ccd_vec3_t *v, double out[3])
 {
     for (int i = 0; i < 3; i++)
         out[i] = (double)v->v[i];
 }
 
-static inline int judge_libccd(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, const call_args_t *x)
+/* Reads a signed distance as a depth: its upper and lower bound change places with the sign. */
+static inline void read_distance(const ccd_distance_t *d, const call_args_t *x, answer_t *out)
 {
-#ifdef OURS_ALONE
-    return call_library(e->call, a, b, ccd, x); /* no entry asks for it */
-#else
-    return e->call == CALL_MPR ? ccdMPRPenetration(a, b, ccd, x->depth, x->dir, x->pos)
-                             : ccdGJKPenetration(a, b, ccd, x->depth, x->dir, x->pos);
-#endif
-}
-
-/* A signed distance, as a depth: its upper and lower bound change places with the sign. */
-static inline void judge_distance(const ccd_distance_t *d, const call_args_t *x, answer_t *out)
-{
-    out->has_proof = out->code == CCD_HIT || out->code == CCD_MISS || out->code == CCD_LIMIT;
-    if (!out->has_proof)
+    out->has_bounds = out->code == CCD_HIT || out->code == CCD_MISS || out->code == CCD_LIMIT;
+    if (!out->has_bounds)
         return;
     out->distance = (double)d->distance;
     out->margins = (double)x->margin1 + (double)x->margin2;
-    out->near = (double)x->max_distance;
+    out->max_distance = (double)x->max_distance;
     out->supports = d->support_points;
     out->depth = -(double)d->distance - out->margins;
     out->lower = -(double)d->distance_upper - out->margins;
-    judge_vec(&d->normal, out->dir);
-    judge_vec(&d->normal, out->normal);
-    judge_vec(&d->point1, out->point1);
-    judge_vec(&d->point2, out->point2);
+    to_double(&d->normal, out->dir);
+    to_double(&d->normal, out->normal);
+    to_double(&d->point1, out->point1);
+    to_double(&d->point2, out->point2);
 }
 
-/* One call of the function itself. */
-static inline void ask_once(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
-                            const ccd_vec3_t *along, answer_t *out)
+/* Makes one call. */
+static inline void call_once(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
+                             const ccd_vec3_t *along, answer_t *out)
 {
-    ccd_penetration_t p;
+    struct {
+        ccd_penetration_t full;
+        ccd_real_t depth;
+        ccd_vec3_t dir, pos;
+    } outputs, unwritten;
     ccd_distance_t distance;
-    ccd_real_t depth;
-    ccd_vec3_t dir, pos;
-    const ccd_real_t margin = (ccd_real_t)(e->state == STATE_MARGINS ? .1 * judge_size : 0);
-    const call_args_t rest = {.warm = warm, .along = along, .want = wanted_outputs, .depth = &depth, .dir = &dir,
-                              .pos = wanted_outputs & CCD_WANT_POS ? &pos : NULL, .penetration = &p, .margin1 = margin, .margin2 = margin / 3,
-                              .max_distance = (ccd_real_t)(e->state == STATE_NEAR ? .1 * judge_size : HUGE_VAL), .distance = &distance};
-    const int full = e->call >= CALL_PENETRATION;
-    memset(&p, judge_blank, sizeof p);
-    memset(&depth, judge_blank, sizeof depth);
-    memset(&dir, judge_blank, sizeof dir);
-    memset(&pos, judge_blank, sizeof pos);
-    int code = e->system ? judge_libccd(e, a, b, ccd, &rest) : call_library(e->call, a, b, ccd, &rest);
-    if (entry_is_verdict(e))
-        code = code ? CCD_HIT : CCD_MISS;
-    if (e->call == CALL_SEPARATE && code == 0) {
-        /* a zero vector keeps no direction: give it the answer's own */
-        double v[3], l;
-        judge_vec(&dir, v);
-        l = sqrt(truth_dot3(v, v));
-        depth = (ccd_real_t)l;
-        for (int i = 0; i < 3; i++)
-            dir.v[i] = (ccd_real_t)(l > 0 ? v[i] / l : 0);
-    }
-    out->code = code;
+    const ccd_real_t margin = (ccd_real_t)(e->state == STATE_MARGINS ? .1 * margin_size : 0);
+    const call_args_t args = {.warm = warm, .along = along, .want = wanted_outputs, .depth = &outputs.depth, .dir = &outputs.dir,
+                              .pos = wanted_outputs & CCD_WANT_POS ? &outputs.pos : NULL, .penetration = &outputs.full,
+                              .margin1 = margin, .margin2 = margin / 3, .distance = &distance,
+                              .max_distance = (ccd_real_t)(e->state == STATE_MAX_DISTANCE ? .1 * margin_size : HUGE_VAL)};
+    memset(&outputs, 0xa5, sizeof outputs);
+    memset(&unwritten, 0xa5, sizeof unwritten);
+    out->code = e->is_libccd ? call_libccd(e->call, a, b, ccd, &args) : call_library(e->call, a, b, ccd, &args);
+    if (entry_is_boolean(e))
+        out->code = out->code ? CCD_HIT : CCD_MISS;
     if (e->call == CALL_DISTANCE) {
-        judge_distance(&distance, &rest, out);
+        read_distance(&distance, &args, out);
         return;
     }
-    if (code != CCD_HIT && code != CCD_LIMIT) {
-        out->touched = !judge_is_blank(&p, sizeof p) || !judge_is_blank(&depth, sizeof depth)
-            || !judge_is_blank(&dir, sizeof dir) || !judge_is_blank(&pos, sizeof pos);
+    if (out->code != CCD_HIT && out->code != CCD_LIMIT) {
+        out->wrote_outputs = memcmp(&outputs, &unwritten, sizeof outputs) != 0;
         return;
     }
-    out->has_proof = full;
-    out->has_pos = full || e->call == CALL_MPR || e->call == CALL_GJK || e->call == CALL_MPR_WARM;
-    if (full) {
-        depth = p.depth;
-        dir = p.dir;
-        pos = p.pos;
-        out->lower = (double)p.depth_lower;
-        out->supports = p.support_points;
-        judge_vec(&p.normal, out->normal);
-        judge_vec(&p.point1, out->point1);
-        judge_vec(&p.point2, out->point2);
+    out->has_bounds = e->call >= CALL_PENETRATION;
+    out->has_pos = out->has_bounds || e->call == CALL_MPR || e->call == CALL_GJK || e->call == CALL_MPR_WARM;
+    if (out->has_bounds) {
+        const ccd_penetration_t *p = &outputs.full;
+        outputs.depth = p->depth;
+        outputs.dir = p->dir;
+        outputs.pos = p->pos;
+        out->lower = (double)p->depth_lower;
+        out->supports = p->support_points;
+        to_double(&p->normal, out->normal);
+        to_double(&p->point1, out->point1);
+        to_double(&p->point2, out->point2);
     }
-    out->depth = (double)depth;
-    judge_vec(&dir, out->dir);
-    judge_vec(&pos, out->pos);
+    out->depth = (double)outputs.depth;
+    to_double(&outputs.dir, out->dir);
+    to_double(&outputs.pos, out->pos);
+    if (e->call == CALL_SEPARATE) { /* a vector: the direction times the depth */
+        out->depth = sqrt(truth_dot3(out->dir, out->dir));
+        for (int i = 0; i < 3; i++)
+            out->dir[i] = out->depth > 0 ? out->dir[i] / out->depth : 0;
+    }
 }
 
-/* One call that comes back whatever happens in it. Support functions count by
- * judge_count; more calls than limit are a loop. */
+/* Makes one call whose endless loops and crashes are caught. limit: of support calls. */
 static inline answer_t call_guarded(const entry_t *e, const void *a, const void *b, const ccd_t *ccd, ccd_warm_t *warm,
-                                   const ccd_vec3_t *along, unsigned long limit)
+                                    const ccd_vec3_t *along, unsigned long limit)
 {
-    static answer_t out; /* static: kept over a siglongjmp */
+    static answer_t out; /* static: survives a siglongjmp */
     memset(&out, 0, sizeof out);
-    judge_limit = limit;
-    judge_calls = 0;
-    int code = sigsetjmp(judge_back, 1);
+    support_call_limit = limit;
+    support_calls = 0;
+    int code = sigsetjmp(before_call, 1);
     if (code == 0) {
         alarm(10);
-        ask_once(e, a, b, ccd, warm, along, &out);
+        call_once(e, a, b, ccd, warm, along, &out);
     } else {
         out.code = code;
     }
     alarm(0);
-    out.calls = judge_calls;
+    out.calls = support_calls;
     return out;
 }
 
-/* The question put with any objects and callbacks, from the state that the entry
- * names. normal: the start of a wrong guess, and what "along" asks about. */
-static inline answer_t ask_objects(const entry_t *e, const void *a, const void *b, const ccd_t *ccd,
-                                   const double normal[3], unsigned long limit)
-{
-    ccd_warm_t warm;
-    ccd_vec3_t along, guess;
-    ccd_t swapped = *ccd;
-    memset(&warm, 0, sizeof warm);
-    for (int i = 0; i < 3; i++) {
-        along.v[i] = (ccd_real_t)normal[i];
-        guess.v[i] = (ccd_real_t)(e->state == STATE_BESIDE ? normal[(i + 1) % 3] : -normal[i]);
-    }
-    swapped.support1 = ccd->support2;
-    swapped.support2 = ccd->support1;
-    swapped.center1 = ccd->center2;
-    swapped.center2 = ccd->center1;
-    if (e->state == STATE_AGAINST || e->state == STATE_BESIDE)
-        OURS(ccdWarmGuess)(&warm, &guess);
-    if (e->state == STATE_AGAIN)
-        call_guarded(e, a, b, ccd, &warm, &along, limit);
-    if (e->state == STATE_SWAPPED)
-        call_guarded(e, b, a, &swapped, &warm, &along, limit);
-    return call_guarded(e, a, b, ccd, e->state == STATE_NONE || e->state >= STATE_MARGINS ? NULL : &warm, &along, limit);
-}
-
-/* Of shapes, whose support points are counted, to one tolerance for every call. */
+/* Settings for shapes whose support points are counted, with one tolerance for every call. */
 static inline ccd_t counting_query(double tol)
 {
     ccd_t ccd = shape_query();
-    ccd.support1 = ccd.support2 = judge_support;
+    ccd.support1 = ccd.support2 = counting_support;
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)tol;
     return ccd;
 }
 
-/* The question about two shapes. limit: support calls until it is a loop. */
-static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b, double tol,
-                           const double normal[3], unsigned long limit)
+/* Calls the entry point for two shapes, from the state that it names. normal: the true one, which wrong
+ * guesses are made of; the direction of "along". */
+static inline answer_t call_entry(const entry_t *e, const shape_t *a, const shape_t *b, double tol, const double normal[3])
 {
     const ccd_t ccd = counting_query(tol);
+    const unsigned long limit = call_limit(e);
     shape_t sa = *a, sb = *b;
-    judge_size = pair_size(a, b);
-    return ask_objects(e, &sa, &sb, &ccd, normal, limit);
+    ccd_warm_t warm;
+    ccd_vec3_t along, guess;
+    memset(&warm, 0, sizeof warm);
+    margin_size = pair_size(a, b);
+    for (int i = 0; i < 3; i++) {
+        along.v[i] = (ccd_real_t)normal[i];
+        guess.v[i] = (ccd_real_t)(e->state == STATE_TILTED_GUESS ? normal[(i + 1) % 3] : -normal[i]);
+    }
+    if (e->state == STATE_OPPOSITE_GUESS || e->state == STATE_TILTED_GUESS)
+        OURS(ccdWarmGuess)(&warm, &guess);
+    if (e->state == STATE_OWN)
+        call_guarded(e, &sa, &sb, &ccd, &warm, &along, limit);
+    if (e->state == STATE_SWAPPED)
+        call_guarded(e, &sb, &sa, &ccd, &warm, &along, limit);
+    return call_guarded(e, &sa, &sb, &ccd, e->state == STATE_NONE || e->state >= STATE_MARGINS ? NULL : &warm, &along, limit);
 }
 
 /* --- judging ------------------------------------------------------------------ */
 
-/* Faults of an answer. The first group is the rate table's, the same
- * for both libraries; the second is what this library promises. */
+/* Faults of an answer: up to DIR_BAD those of the rate table, the same for both libraries; then
+ * breaches of what this library guarantees. */
 #define FAULTS(X) \
     X(LOOP, "loop") \
     X(CRASH, "crash") \
@@ -352,7 +305,7 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     X(NOT_NORMAL, "direction not the normal") \
     X(NOT_SUPPORT, "depth is not the support value of its direction") \
     X(NOT_MINIMUM, "not the minimum within tolerance") \
-    X(NOT_PROMISED, "deeper than MPR promises") \
+    X(NOT_MPR_MINIMUM, "deeper than MPR promises") \
     X(FALSE_PROOF, "lower bound above the truth") \
     X(NO_PROOF, "gap above tolerance") \
     X(LIMIT, "stopped at the cap") \
@@ -362,7 +315,7 @@ static inline answer_t ask(const entry_t *e, const shape_t *a, const shape_t *b,
     X(WITNESS_ACROSS, "witness points apart across the normal") \
     X(POSITION, "position not between the witness points") \
     X(MISCOUNTED, "supports miscounted") \
-    X(TOUCHED, "outputs written without an answer") \
+    X(WROTE_OUTPUTS, "outputs written without an answer") \
     X(STACK, "stack") \
     X(TAIL, "tail")
 
@@ -390,17 +343,15 @@ static inline const char *fault_text(int bit)
 
 /* Faults that this library never has, whatever the entry point. */
 enum {
-    FAULTS_FORBIDDEN = FAULT_LOOP | FAULT_CRASH | FAULT_NAN | FAULT_DIR0 | FAULT_MISS_DEEP | FAULT_FALSE_HIT
-        | FAULT_UNSOUND | FAULT_CODE | FAULT_MISSED | FAULT_NOT_UNIT | FAULT_NOT_NORMAL | FAULT_NOT_SUPPORT | FAULT_NOT_MINIMUM | FAULT_NOT_PROMISED
-        | FAULT_FALSE_PROOF | FAULT_NO_PROOF | FAULT_LIMIT | FAULT_WITNESS_DEPTH
-        | FAULT_WITNESS_PLANE | FAULT_WITNESS_INSIDE | FAULT_WITNESS_ACROSS | FAULT_POSITION | FAULT_MISCOUNTED | FAULT_TOUCHED
+    FAULTS_FORBIDDEN = ~(FAULT_MISS_SHALLOW | FAULT_OVER | FAULT_UNDER | FAULT_ZERO | FAULT_DIR_BAD | FAULT_STACK | FAULT_TAIL)
 };
 
 /* Where minima are nearly everywhere no proof ends, and the search stops as MPR does. */
 enum { ALL_AROUND = 2 };
 
+/* What an answer about a pair is judged by. */
 typedef struct {
-    double size, noise; /* metres */
+    double size, noise; /* metres; noise: the rounding error of a depth */
     double tol;         /* the query's, metres */
     truth_t truth;
     int surface;        /* minima form a curve or surface: CCD_LIMIT is an answer */
@@ -419,159 +370,205 @@ static inline criteria_t criteria_of(const shape_t *a, const shape_t *b, double 
     return q;
 }
 
-/* Support value of one shape, in full precision, relative to origin. */
-static inline double judge_reach(const shape_t *s, const double origin[3], const double n[3])
-{
-    double p[3];
-    truth_support(s, origin, n, p);
-    return truth_dot3(p, n);
-}
-
-/* How far an answer's points may be off: as far as the depth may be, and where a bound is given, and
- * the cap or rounding, by no more than FAULT_NO_PROOF allows, left it open, by that. */
-static inline double judge_bound(const entry_t *e, const answer_t *x, const criteria_t *q)
+/* Returns how far a point may be off: as far as the depth may be, and where an open gap between the
+ * bounds is allowed, by that. */
+static inline double point_tolerance(const entry_t *e, const answer_t *x, const criteria_t *q)
 {
     const double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_MPR) * x->depth) : q->tol;
     const double reached = x->code == CCD_LIMIT || e->call == CALL_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
     return reached + q->noise + tolerance(TOL_WITNESS) * q->size;
 }
 
-/* Is a point, told relative to origin, farther than this outside of the shape? By 26 planes. */
-static inline int judge_outside(const shape_t *s, const double origin[3], const double p[3], double bound)
+/* Returns the signed distance of a point from the shape's supporting plane along the unit vector n. */
+static inline double distance_from_plane(const shape_t *s, const double n[3], const double point[3])
+{
+    double origin[3], relative[3], support[3];
+    for (int i = 0; i < 3; i++) {
+        origin[i] = (double)s->pos[i];
+        relative[i] = point[i] - origin[i];
+    }
+    truth_support(s, origin, n, support);
+    return truth_dot3(relative, n) - truth_dot3(support, n);
+}
+
+/* Returns whether a point is farther than this outside of the shape, by 26 supporting planes. */
+static inline int is_outside(const shape_t *s, const double point[3], double bound)
 {
     int outside = 0;
     for (int i = 0; i < 27; i++) {
         double n[3] = {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}, l = sqrt(truth_dot3(n, n));
-        if (l == 0)
-            continue;
-        n[0] /= l;
-        n[1] /= l;
-        n[2] /= l;
-        outside |= !(truth_dot3(p, n) - judge_reach(s, origin, n) <= bound);
+        for (int k = 0; k < 3; k++)
+            n[k] /= l;
+        outside |= l > 0 && !(distance_from_plane(s, n, point) <= bound);
     }
     return outside;
 }
 
-/* pos is within half the depth of both shapes; deeper than an object is thick the middle of the chord
- * is beyond it. And a hair. */
+/* pos is within half the depth of both shapes, and a hair: in a shape thinner than the depth the middle
+ * of the chord is outside. */
 static inline int judge_position(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
-    const double inside = judge_bound(e, x, q) + (0.5 + 1.0 / 256) * x->depth;
-    double origin[3], p[3];
-    for (int i = 0; i < 3; i++) {
-        origin[i] = (double)a->pos[i];
-        p[i] = x->pos[i] - origin[i];
-    }
-    return judge_outside(a, origin, p, inside) || judge_outside(b, origin, p, inside) ? FAULT_POSITION : 0;
+    const double bound = point_tolerance(e, x, q) + (0.5 + 1.0 / 256) * x->depth;
+    return is_outside(a, x->pos, bound) || is_outside(b, x->pos, bound) ? FAULT_POSITION : 0;
 }
 
-/* Witness points: each in its shape and at its supporting plane, their difference
- * the depth; pos their middle where no centre of pressure is promised. */
+static inline int judge_unit(const double n[3])
+{
+    return fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT_LENGTH) ? 0 : FAULT_NOT_UNIT;
+}
+
+/* Witness points: each in its shape and at its supporting plane, their difference the depth; pos their
+ * middle where no centre of pressure is guaranteed. */
 static inline int judge_witness(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
-    double bound = judge_bound(e, x, q), origin[3], d[3], m[3], p1[3], p2[3], value, l2;
+    const double bound = point_tolerance(e, x, q), value = x->depth * truth_dot3(x->dir, x->normal);
     const int has_centre = x->code == CCD_HIT && e->call != CALL_ALONG && e->call != CALL_PLANAR;
-    int faults = 0, i;
-    for (i = 0; i < 3; i++) {
-        origin[i] = (double)a->pos[i];
+    double d[3], m[3], across2 = 0;
+    int faults = has_centre ? judge_position(e, x, a, b, q) : 0;
+    for (int i = 0; i < 3; i++) {
         m[i] = -x->normal[i];
-        p1[i] = x->point1[i] - origin[i];
-        p2[i] = x->point2[i] - origin[i];
-        d[i] = p1[i] - p2[i];
-        if (!has_centre && !(fabs((p1[i] + p2[i]) / 2 - (x->pos[i] - origin[i])) <= q->noise))
+        d[i] = x->point1[i] - x->point2[i];
+        across2 += (d[i] - x->depth * x->dir[i]) * (d[i] - x->depth * x->dir[i]);
+        if (!has_centre && !(fabs(x->point1[i] - d[i] / 2 - x->pos[i]) <= q->noise))
             faults |= FAULT_POSITION;
     }
-    value = x->depth * truth_dot3(x->dir, x->normal);
     if (!(fabs(truth_dot3(d, x->normal) - value) <= bound))
         faults |= FAULT_WITNESS_DEPTH;
-    for (i = 0, l2 = 0; i < 3; i++) {
-        double c = d[i] - x->depth * x->dir[i];
-        l2 += c * c;
-    }
-    l2 -= pow(truth_dot3(d, x->normal) - value, 2);
-    if (!(sqrt(fmax(l2, 0)) <= sqrt(2 * (x->depth + bound) * bound) + bound))
+    across2 -= pow(truth_dot3(d, x->normal) - value, 2);
+    if (!(sqrt(fmax(across2, 0)) <= sqrt(2 * (x->depth + bound) * bound) + bound))
         faults |= FAULT_WITNESS_ACROSS;
-    if (!(judge_reach(a, origin, x->normal) - truth_dot3(p1, x->normal) <= bound)
-        || !(judge_reach(b, origin, m) - truth_dot3(p2, m) <= bound))
+    if (!(distance_from_plane(a, x->normal, x->point1) >= -bound) || !(distance_from_plane(b, m, x->point2) >= -bound))
         faults |= FAULT_WITNESS_PLANE;
-    if (judge_outside(a, origin, p1, bound) || judge_outside(b, origin, p2, bound))
+    if (is_outside(a, x->point1, bound) || is_outside(b, x->point2, bound))
         faults |= FAULT_WITNESS_INSIDE;
-    if (has_centre)
-        faults |= judge_position(e, x, a, b, q);
     return faults;
 }
 
-/* The part of its depth, or of the tolerance, by which an answer of ccdMPRPenetration
- * may be above the least depth; MPR_POINTS support points later it is only LATE. */
-enum { MPR_POINTS = 160 };
+enum {
+    MPR_POINTS = 160,    /* support points after which a depth of MPR is only within TOL_MPR_CAPPED */
+    MINIMUM_POINTS = 340 /* support points after which a minimum is given up: the compatible calls cannot report it */
+};
 
-/* After so many a minimum is given up: the compatible calls cannot say so. */
-enum { MINIMUM_POINTS = 340 };
-
-static inline int mpr_within(double depth, double least, double tol, double noise, unsigned long supports)
+static inline int is_mpr_minimum(double depth, double least, double tol, double noise, unsigned long supports)
 {
-    least = fmax(least, 0);
-    return depth <= least + fmax(tol, tolerance(TOL_MPR) * least) + noise
-        || (supports >= MPR_POINTS && depth <= least + fmax(tol, tolerance(TOL_MPR_CAPPED) * least) + noise);
+    const double part = tolerance(supports >= MPR_POINTS ? TOL_MPR_CAPPED : TOL_MPR);
+    return depth <= fmax(least, 0) + fmax(tol, part * fmax(least, 0)) + noise;
 }
 
-/* A signed distance, overlapping or not: the sign is the code's, the plane is as far as it says, the
- * bounds close about the truth, but of what is too far, and the points are in the objects, of a gap as
- * far apart as its upper bound; at the cap, where minima form a surface, the distance is right all the
- * same. */
-static inline int judge_signed(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
+/* A signed distance: its sign is the code's, the plane is as far as reported, the bounds enclose the truth
+ * and close up to max_distance, and the points are in the objects, those of a gap its upper bound apart.
+ * Where minima form a surface, the distance at the iteration limit is right all the same. */
+static inline int judge_distance(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     const truth_t *t = &q->truth;
     const double rounding = 2 * q->noise + t->depth - t->lower, floor = tolerance(TOL_PROOF_FLOOR) * largest_coordinate(a, b);
     const double within = x->code == CCD_LIMIT ? fmax(q->tol, tolerance(TOL_MPR) * fabs(t->depth)) : q->tol;
-    const double bound = judge_bound(e, x, q) + x->margins;
-    double origin[3], p[2][3], apart = 0;
+    const double bound = point_tolerance(e, x, q) + x->margins;
+    double apart2 = 0;
     int faults = 0;
-    if (!x->has_proof)
+    if (!x->has_bounds)
         return FAULT_CODE;
     if (x->code == CCD_LIMIT && !q->surface)
         faults |= FAULT_LIMIT;
     if (!isfinite(x->depth) || !isfinite(x->lower) || !isfinite(truth_dot3(x->normal, x->normal)))
         return faults | FAULT_NAN;
-    if (!(fabs(sqrt(truth_dot3(x->normal, x->normal)) - 1) <= tolerance(TOL_UNIT_LENGTH)))
-        faults |= FAULT_NOT_UNIT;
+    faults |= judge_unit(x->normal);
     if ((x->code != CCD_LIMIT && (x->code == CCD_HIT) != (x->distance < 0)) || (x->distance == 0 && signbit(x->distance)))
         faults |= FAULT_CODE;
     if (x->depth < truth_support_value(a, b, x->normal) - 2 * q->noise)
         faults |= FAULT_UNSOUND;
     if (x->lower > x->depth || x->lower > t->depth + rounding)
         faults |= FAULT_FALSE_PROOF;
-    if (x->code != CCD_LIMIT && x->distance <= x->near && x->depth - x->lower > q->tol + floor + 2 * q->noise)
+    if (x->code != CCD_LIMIT && x->distance <= x->max_distance && x->depth - x->lower > q->tol + floor + 2 * q->noise)
         faults |= FAULT_NO_PROOF;
-    if (x->distance <= x->near && x->depth > t->depth + within + rounding)
+    if (x->distance <= x->max_distance && x->depth > t->depth + within + rounding)
         faults |= FAULT_NOT_MINIMUM;
-    for (int i = 0; i < 3; i++) {
-        origin[i] = (double)a->pos[i];
-        p[0][i] = x->point1[i] - origin[i];
-        p[1][i] = x->point2[i] - origin[i];
-        apart += (p[0][i] - p[1][i]) * (p[0][i] - p[1][i]);
-    }
-    if (judge_outside(a, origin, p[0], bound) || judge_outside(b, origin, p[1], bound))
+    if (is_outside(a, x->point1, bound) || is_outside(b, x->point2, bound))
         faults |= FAULT_WITNESS_INSIDE;
-    if (x->distance > 0 && !(fabs(sqrt(apart) + x->lower + x->margins) <= 2 * q->noise + tolerance(TOL_WITNESS) * q->size))
+    for (int i = 0; i < 3; i++)
+        apart2 += (x->point1[i] - x->point2[i]) * (x->point1[i] - x->point2[i]);
+    if (x->distance > 0 && !(fabs(sqrt(apart2) + x->lower + x->margins) <= 2 * q->noise + tolerance(TOL_WITNESS) * q->size))
         faults |= FAULT_WITNESS_DEPTH;
     return faults;
 }
 
-/* All that is wrong with the answer. */
+/* The faults of the rate table in a depth. value: h of the answer's direction. */
+static inline int judge_rates(const answer_t *x, double value, const criteria_t *q)
+{
+    const truth_t *t = &q->truth;
+    const double within = q->noise
+        + fmin(tolerance(TOL_TABLE) * fmax(t->depth, 0) + 2 * q->tol, tolerance(TOL_TABLE_CAP) * q->size);
+    int faults = 0;
+    if (x->depth > t->depth + within)
+        faults |= FAULT_OVER;
+    if (x->depth < t->lower - within)
+        faults |= FAULT_UNDER;
+    if (x->depth < tolerance(TOL_TABLE) * t->lower - q->noise)
+        faults |= FAULT_ZERO;
+    if (x->depth < value - within)
+        faults |= FAULT_UNSOUND;
+    if (value > t->depth + within)
+        faults |= FAULT_DIR_BAD;
+    return faults;
+}
+
+/* Breaches of what this library guarantees for a depth. */
+static inline int judge_guarantees(const entry_t *e, const answer_t *x, double value, const shape_t *a, const shape_t *b,
+                                   const criteria_t *q)
+{
+    const truth_t *t = &q->truth;
+    const double open = t->depth - t->lower, floor = tolerance(TOL_PROOF_FLOOR) * largest_coordinate(a, b);
+    const double noise = open + 2 * q->noise, least = fmax(t->depth, 0);
+    int faults = 0;
+    if (x->has_bounds) {
+        faults |= judge_unit(x->normal) | judge_witness(e, x, a, b, q);
+        if (!(truth_dot3(x->dir, x->normal) > 0))
+            faults |= FAULT_NOT_UNIT;
+        if (e->call != CALL_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
+            faults |= FAULT_NOT_NORMAL;
+        if (!(x->lower >= 0 && x->lower <= x->depth) || x->lower > t->depth + q->noise + open)
+            faults |= FAULT_FALSE_PROOF;
+        /* pairs of calls, the last of which may lack one: a position queries one object at a time */
+        if (x->supports != (x->calls + 1) / 2)
+            faults |= FAULT_MISCOUNTED;
+    } else if (x->has_pos) {
+        faults |= judge_position(e, x, a, b, q);
+    }
+    /* h(dir) itself rounds by up to the noise, and a depth is never below 0 */
+    if (!(fabs(x->depth - fmax(value, 0)) <= 2 * q->noise))
+        faults |= x->depth < value ? FAULT_NOT_SUPPORT | FAULT_UNSOUND : FAULT_NOT_SUPPORT;
+    if (entry_is_minimum(e)) {
+        const int at_limit = x->code == CCD_LIMIT || (!x->has_bounds && x->calls / 2 >= MINIMUM_POINTS);
+        const double within = q->surface == ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_MPR) * t->depth) : q->tol;
+        if (!(x->depth <= least + within + noise))
+            faults |= FAULT_NOT_MINIMUM;
+    }
+    if (x->code == CCD_HIT
+        && ((e->call == CALL_PROVEN && !(x->depth - x->lower <= q->tol + floor + 2 * q->noise))
+            || (e->call == CALL_PENETRATION
+                && !(x->depth - x->lower <= fmax(q->tol, tolerance(TOL_MPR) * x->depth) + 2 * q->noise))))
+        faults |= FAULT_NO_PROOF;
+    if (entry_is_mpr(e) && !is_mpr_minimum(x->depth, t->depth, q->tol, noise, x->calls / 2))
+        faults |= FAULT_NOT_MPR_MINIMUM;
+    if (e->call == CALL_ALONG && x->depth > least + q->tol + noise)
+        faults |= FAULT_NOT_MINIMUM; /* the direction is the true normal */
+    return faults;
+}
+
+/* Returns all faults of an answer. */
 static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     const truth_t *t = &q->truth;
-    double gap = t->depth - t->lower, value, table, l2;
-    int faults = 0, finite;
+    double value;
+    int faults = 0, is_finite;
     if (x->code == ANSWER_LOOP)
         return FAULT_LOOP;
     if (x->code == ANSWER_CRASH)
         return FAULT_CRASH;
     if (e->call == CALL_DISTANCE)
-        return judge_signed(e, x, a, b, q);
-    if (x->touched)
-        faults |= FAULT_TOUCHED;
+        return judge_distance(e, x, a, b, q);
+    if (x->wrote_outputs)
+        faults |= FAULT_WROTE_OUTPUTS;
     if (x->code == CCD_MISS) {
         if (t->lower > tolerance(TOL_DEEP) * q->size + q->noise)
             faults |= FAULT_MISS_DEEP;
@@ -583,128 +580,79 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     }
     if (x->code != CCD_HIT && x->code != CCD_LIMIT)
         return faults | FAULT_CODE;
-    if (x->code == CCD_LIMIT && !x->has_proof)
+    if (x->code == CCD_LIMIT && !x->has_bounds)
         faults |= FAULT_CODE;
     /* ccdPenetration gives up after 160 support points */
     if (x->code == CCD_LIMIT && !q->surface && !(e->call == CALL_PENETRATION && x->calls >= 2 * MPR_POINTS))
         faults |= FAULT_LIMIT;
     if (t->depth < -q->noise && !q->touching)
         return faults | FAULT_FALSE_HIT;
-    if (entry_is_verdict(e))
+    if (entry_is_boolean(e))
         return faults;
     if (e->call == CALL_SEPARATE && x->depth == 0)
         return faults | (t->depth > q->tol + q->noise ? FAULT_ZERO | FAULT_UNSOUND : 0);
 
-    finite = isfinite(x->depth);
+    is_finite = isfinite(x->depth);
     for (int i = 0; i < 3; i++)
-        finite = finite && isfinite(x->dir[i]) && (!x->has_pos || isfinite(x->pos[i]));
-    if (!finite)
+        is_finite = is_finite && isfinite(x->dir[i]) && (!x->has_pos || isfinite(x->pos[i]));
+    if (!is_finite)
         return faults | FAULT_NAN;
-    l2 = truth_dot3(x->dir, x->dir);
-    if (l2 == 0)
+    if (truth_dot3(x->dir, x->dir) == 0)
         return faults | FAULT_DIR0;
-    if (!(fabs(sqrt(l2) - 1) <= tolerance(TOL_UNIT_LENGTH)) && e->call != CALL_SEPARATE)
-        faults |= FAULT_NOT_UNIT;
-
-    /* the rate table's verdicts; along a direction that is not the normal the plane is farther */
-    value = x->has_proof ? truth_support_value(a, b, x->normal) / truth_dot3(x->dir, x->normal) : truth_support_value(a, b, x->dir);
-    table = fmin(tolerance(TOL_TABLE) * fmax(t->depth, 0) + 2 * q->tol, tolerance(TOL_TABLE_CAP) * q->size) + q->noise;
-    if (x->depth > t->depth + table)
-        faults |= FAULT_OVER;
-    if (x->depth < t->lower - table)
-        faults |= FAULT_UNDER;
-    if (x->depth < tolerance(TOL_TABLE) * t->lower - q->noise)
-        faults |= FAULT_ZERO;
-    if (x->depth < value - table)
-        faults |= FAULT_UNSOUND;
-    if (value > t->depth + table)
-        faults |= FAULT_DIR_BAD;
-    if (e->system)
+    if (e->call != CALL_SEPARATE)
+        faults |= judge_unit(x->dir);
+    /* along a direction that is not the normal the plane is farther */
+    value = x->has_bounds ? truth_support_value(a, b, x->normal) / truth_dot3(x->dir, x->normal) : truth_support_value(a, b, x->dir);
+    faults |= judge_rates(x, value, q);
+    if (e->is_libccd)
         return faults;
-
-    /* the promises */
-    if (x->has_proof) {
-        double along = truth_dot3(x->dir, x->normal), n2 = truth_dot3(x->normal, x->normal);
-        if (!(fabs(sqrt(n2) - 1) <= tolerance(TOL_UNIT_LENGTH)) || !(along > 0))
-            faults |= FAULT_NOT_UNIT;
-        if (e->call != CALL_ALONG && memcmp(x->dir, x->normal, sizeof x->dir) != 0)
-            faults |= FAULT_NOT_NORMAL;
-        faults |= judge_witness(e, x, a, b, q);
-        if (!(x->lower >= 0 && x->lower <= x->depth) || x->lower > t->depth + q->noise + gap)
-            faults |= FAULT_FALSE_PROOF;
-        /* supports counts pairs of calls, of which the last may lack one: for a position the objects are asked one by one */
-        if (x->supports != (x->calls + 1) / 2)
-            faults |= FAULT_MISCOUNTED;
-    }
-    if (x->has_pos && !x->has_proof)
-        faults |= judge_position(e, x, a, b, q);
-    /* h(dir) itself rounds by up to the noise, and a depth is never below 0 */
-    if (!(fabs(x->depth - fmax(value, 0)) <= 2 * q->noise))
-        faults |= x->depth < value ? FAULT_NOT_SUPPORT | FAULT_UNSOUND : FAULT_NOT_SUPPORT;
-    if (entry_is_minimum(e)) {
-        if (faults & (FAULT_OVER | FAULT_UNDER))
-            faults |= FAULT_NOT_MINIMUM;
-        const int at_limit = x->code == CCD_LIMIT || (!x->has_proof && x->calls / 2 >= MINIMUM_POINTS);
-        const double within = q->surface == ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_MPR) * t->depth) : q->tol;
-        if (!(x->depth <= fmax(t->depth, 0) + within + gap + 2 * q->noise))
-            faults |= FAULT_NOT_MINIMUM;
-        if (e->call == CALL_PROVEN && x->code == CCD_HIT
-            && !(x->depth - x->lower <= q->tol + tolerance(TOL_PROOF_FLOOR) * largest_coordinate(a, b) + 2 * q->noise))
-            faults |= FAULT_NO_PROOF;
-    }
-    if (e->call == CALL_PENETRATION && x->code == CCD_HIT
-        && !(x->depth - x->lower <= fmax(q->tol, tolerance(TOL_MPR) * x->depth) + 2 * q->noise))
-        faults |= FAULT_NO_PROOF;
-    if (entry_is_mpr(e) && !mpr_within(x->depth, t->depth, q->tol, gap + 2 * q->noise, x->calls / 2))
-        faults |= FAULT_NOT_PROMISED;
-    if (e->call == CALL_ALONG && x->depth > fmax(t->depth, 0) + q->tol + gap + 2 * q->noise)
-        faults |= FAULT_NOT_MINIMUM; /* asked along the true normal */
-    return faults;
+    if (entry_is_minimum(e) && faults & (FAULT_OVER | FAULT_UNDER))
+        faults |= FAULT_NOT_MINIMUM;
+    return faults | judge_guarantees(e, x, value, a, b, q);
 }
 
-/* Prints the faults' names; returns how many. */
-static inline int print_faults(FILE *file, int faults)
+/* Prints the faults' names. */
+static inline void print_faults(int faults)
 {
     int n = 0;
     for (int bit = 0; bit < FAULT_BIT_COUNT; bit++)
         if (faults >> bit & 1)
-            fprintf(file, "%s%s", n++ ? ", " : "", fault_text(bit));
-    return n;
+            printf("%s%s", n++ ? ", " : "", fault_text(bit));
 }
 
-static inline void print_answer(FILE *file, const answer_t *x)
+static inline void print_answer(const answer_t *x)
 {
-    fprintf(file, "code %d depth %.17g dir %.17g %.17g %.17g pos %.9g %.9g %.9g calls %lu", x->code, x->depth,
+    printf("code %d depth %.17g dir %.17g %.17g %.17g pos %.9g %.9g %.9g calls %lu", x->code, x->depth,
             x->dir[0], x->dir[1], x->dir[2], x->pos[0], x->pos[1], x->pos[2], x->calls);
-    if (x->has_proof)
-        fprintf(file, " lower %.17g normal %.9g %.9g %.9g point1 %.9g %.9g %.9g point2 %.9g %.9g %.9g supports %lu",
+    if (x->has_bounds)
+        printf(" lower %.17g normal %.9g %.9g %.9g point1 %.9g %.9g %.9g point2 %.9g %.9g %.9g supports %lu",
                 x->lower, x->normal[0], x->normal[1], x->normal[2], x->point1[0], x->point1[1], x->point1[2],
                 x->point2[0], x->point2[1], x->point2[2], x->supports);
 }
 
-/* An answer that is wrong, on one line. */
+/* Prints a faulty answer on one line. */
 static inline void print_faulty_answer(const entry_t *e, const answer_t *x, int faults, const truth_t *truth)
 {
     printf("%s: ", e->name);
-    print_faults(stdout, faults);
+    print_faults(faults);
     printf(": ");
-    print_answer(stdout, x);
+    print_answer(x);
     printf(", truth %.17g (lower %.17g) along %.17g %.17g %.17g\n", truth->depth, truth->lower, truth->n[0], truth->n[1], truth->n[2]);
 }
 
-/* A pair as C that makes it again. */
-static inline void print_shape(FILE *file, const char *name, const shape_t *s)
+/* Prints everything that makes the shape again. */
+static inline void print_shape(const char *name, const shape_t *s)
 {
-    fprintf(file, "%s: type %d p %.17g %.17g %.17g tie %d pos %.17g %.17g %.17g rot", name, (int)s->type, (double)s->p[0],
+    printf("%s: type %d p %.17g %.17g %.17g tie %d pos %.17g %.17g %.17g rot", name, (int)s->type, (double)s->p[0],
             (double)s->p[1], (double)s->p[2], s->tie, (double)s->pos[0], (double)s->pos[1], (double)s->pos[2]);
     for (int i = 0; i < 9; i++)
-        fprintf(file, " %.17g", (double)s->rot[i]);
+        printf(" %.17g", (double)s->rot[i]);
     if (s->type == SHAPE_POLYTOPE) {
-        fprintf(file, " verts %d", s->nverts);
-        for (int i = 0; i < 3 * s->nverts && i < 3 * 16; i++)
-            fprintf(file, " %.17g", (double)s->verts[i]);
+        printf(" verts %d", s->nverts);
+        for (int i = 0; i < 3 * s->nverts; i++)
+            printf(" %.17g", (double)s->verts[i]);
     }
-    fprintf(file, "\n");
+    printf("\n");
 }
 
 #endif

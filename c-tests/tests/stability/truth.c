@@ -16,8 +16,8 @@ static void fail(const char *what, const shape_t *a, const shape_t *b, double go
 {
     if (failed++ < 10) {
         printf("FAILED %s: %.17g not in [%.17g, %.17g]\n", what, got, low, high);
-        print_shape(stdout, "a", a);
-        print_shape(stdout, "b", b);
+        print_shape("a", a);
+        print_shape("b", b);
     }
 }
 

@@ -22,21 +22,21 @@ static const struct {
     entry_t entry;
     int bare; /* without centres */
 } calls[] = {
-    {{"MPR", 0, CALL_MPR, STATE_AGAIN}, 0},
-    {{"MPR warm", 0, CALL_MPR_WARM, STATE_AGAIN}, 0},
-    {{"GJK", 0, CALL_GJK, STATE_AGAIN}, 0},
-    {{"GJK separate", 0, CALL_SEPARATE, STATE_AGAIN}, 0},
-    {{"MPR yes or no", 0, CALL_MPR_INTERSECT, STATE_AGAIN}, 0},
-    {{"GJK yes or no", 0, CALL_GJK_INTERSECT, STATE_AGAIN}, 0},
-    {{"penetration", 0, CALL_PENETRATION, STATE_AGAIN}, 0},
-    {{"penetration, no centres", 0, CALL_PENETRATION, STATE_AGAIN}, 1},
-    {{"proven", 0, CALL_PROVEN, STATE_AGAIN}, 0},
-    {{"proven, no centres", 0, CALL_PROVEN, STATE_AGAIN}, 1},
-    {{"local", 0, CALL_LOCAL, STATE_AGAIN}, 0},
-    {{"local, no centres", 0, CALL_LOCAL, STATE_AGAIN}, 1},
-    {{"incremental", 0, CALL_INCREMENTAL, STATE_AGAIN}, 0},
-    {{"along", 0, CALL_ALONG, STATE_AGAIN}, 0},
-    {{"distance", 0, CALL_DISTANCE, STATE_AGAIN}, 0},
+    {{"MPR", 0, CALL_MPR, STATE_OWN}, 0},
+    {{"MPR warm", 0, CALL_MPR_WARM, STATE_OWN}, 0},
+    {{"GJK", 0, CALL_GJK, STATE_OWN}, 0},
+    {{"GJK separate", 0, CALL_SEPARATE, STATE_OWN}, 0},
+    {{"MPR yes or no", 0, CALL_MPR_INTERSECT, STATE_OWN}, 0},
+    {{"GJK yes or no", 0, CALL_GJK_INTERSECT, STATE_OWN}, 0},
+    {{"penetration", 0, CALL_PENETRATION, STATE_OWN}, 0},
+    {{"penetration, no centres", 0, CALL_PENETRATION, STATE_OWN}, 1},
+    {{"proven", 0, CALL_PROVEN, STATE_OWN}, 0},
+    {{"proven, no centres", 0, CALL_PROVEN, STATE_OWN}, 1},
+    {{"local", 0, CALL_LOCAL, STATE_OWN}, 0},
+    {{"local, no centres", 0, CALL_LOCAL, STATE_OWN}, 1},
+    {{"incremental", 0, CALL_INCREMENTAL, STATE_OWN}, 0},
+    {{"along", 0, CALL_ALONG, STATE_OWN}, 0},
+    {{"distance", 0, CALL_DISTANCE, STATE_OWN}, 0},
 };
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
@@ -66,10 +66,10 @@ static said_t say(int call, const wide_pair_t *p, double tol, const double along
     x.tol = tol;
     body_calls = 0;
     body_stack_lowest = (const char *)__builtin_frame_address(0);
-    ask_once(&calls[call].entry, &p->body[0], &p->body[1], &ccd, warm, &way, &x.a);
+    call_once(&calls[call].entry, &p->body[0], &p->body[1], &ccd, warm, &way, &x.a);
     x.stack = (unsigned long)((const char *)__builtin_frame_address(0) - body_stack_lowest);
     x.supports = body_calls / 2;
-    if (!x.a.has_proof)
+    if (!x.a.has_bounds)
         memcpy(x.a.normal, x.a.dir, sizeof x.a.normal);
     return x;
 }
@@ -95,7 +95,7 @@ enum { TOLERANCES = 5, DEFAULT_TOLERANCE = 1 };
 static double wide_noise(const wide_pair_t *p) { return tolerance(TOL_ULPS) * real_eps() * p->largest; }
 
 /* Whether the point is outside the body by more than the bound, metres. */
-static int is_outside(const body_t *s, const double at[3], double bound)
+static int is_outside_body(const body_t *s, const double at[3], double bound)
 {
     body_t point;
     memset(&point, 0, sizeof point);
@@ -161,7 +161,7 @@ static int judge_points(const said_t *x, const wide_pair_t *p, double within, rn
 {
     const double bound = fmax(within, tolerance(TOL_WITNESS) * p->size) + tolerance(TOL_ULPS) * real_eps() * p->largest;
     for (int k = 0; k < 2; k++)
-        if (is_outside(&p->body[k], k ? x->a.point2 : x->a.point1, bound))
+        if (is_outside_body(&p->body[k], k ? x->a.point2 : x->a.point1, bound))
             return FAULT_WITNESS_INSIDE;
     if (x->call == CALL_LOCAL && x->a.code == CCD_HIT && fall(p, x->a.dir, d) > 2 * within + bound)
         return FAULT_NOT_MINIMUM;
@@ -188,12 +188,12 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
         return faults | FAULT_FALSE_HIT;
     if (x->code == CCD_LIMIT && apart && said->call != CALL_DISTANCE)
         return faults | FAULT_FALSE_HIT;
-    if ((x->code == CCD_MISS && said->call != CALL_DISTANCE) || entry_is_verdict(e))
+    if ((x->code == CCD_MISS && said->call != CALL_DISTANCE) || entry_is_boolean(e))
         return faults;
     if (said->call == CALL_SEPARATE && x->depth == 0)
         return faults;
     for (int i = 0; i < 3; i++)
-        if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->has_proof && !(isfinite(x->point1[i]) && isfinite(x->point2[i]))))
+        if (!isfinite(x->dir[i]) || !isfinite(n[i]) || (x->has_bounds && !(isfinite(x->point1[i]) && isfinite(x->point2[i]))))
             return faults | FAULT_NAN;
     double along = truth_dot3(x->dir, n);
     if (!(fabs(sqrt(truth_dot3(n, n)) - 1) <= tolerance(TOL_UNIT_LENGTH) * 4) || !(along > 0) || !isfinite(x->depth) || !isfinite(x->lower))
@@ -213,7 +213,7 @@ static int judge_said(const said_t *said, const wide_pair_t *p, const case_t *c,
     if (entry_is_mpr(e) && x->code == CCD_HIT && said->supports < MPR_POINTS
         && x->depth > fmax(c->least, 0) + fmax(within, tolerance(TOL_MPR) * c->least) + c->noise)
         faults |= FAULT_OVER;
-    if (x->has_proof && rng_below(d, 8) == 0)
+    if (x->has_bounds && rng_below(d, 8) == 0)
         faults |= judge_points(said, p, within + (x->code == CCD_LIMIT ? fmax(x->depth - x->lower, 0) : 0), d);
     return faults;
 }
@@ -250,9 +250,9 @@ static void tally(int row, uint64_t index, const wide_pair_t *p, const case_t *c
         printf("first seen in row %d (%s), pair %lu%s, tolerance %g, %s:", row, rows[row].name, (unsigned long)index,
                x->moved ? ", moved" : "", x->tol, calls[x->entry].entry.name);
         printf(" ");
-        print_faults(stdout, faults);
+        print_faults(faults);
         printf("\n  ");
-        print_answer(stdout, &x->a);
+        print_answer(&x->a);
         printf(" supports %lu stack %lu; truth %.17g to %.17g, least known %.17g, noise %.2g\n", x->supports, x->stack, c->truth.lower,
                c->truth.upper, c->least, c->noise);
         print_body("a", &p->body[0]);
