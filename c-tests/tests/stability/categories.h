@@ -70,7 +70,7 @@ static inline shape_t random_shape_of(rng_t *d, ccd_real_t *verts, shape_type_t 
     return type == SHAPE_POLYTOPE ? random_hull(d, verts, x) : shape_make(type, x, y, z);
 }
 
-static const int any_kind[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
+static const int all_types[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
 
 /* One of these kinds. */
 static inline void pair_one(rng_t *d, pair_t *p, int side, const int *kinds, int n, double low, double high)
@@ -268,7 +268,7 @@ static inline void pair_scaled(rng_t *d, pair_t *p)
     double u[3], x;
     int k;
     for (k = 0; k < 2; k++)
-        pair_one(d, p, k, any_kind, SHAPE_TYPES, .1 * scale, scale);
+        pair_one(d, p, k, all_types, SHAPE_TYPES, .1 * scale, scale);
     if (place != ON_AXIS || rng_below(d, 2))
         pair_turn(d, &p->a);
     if (place == ON_AXIS)
@@ -339,20 +339,20 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     switch (category) {
     case CATEGORY_GENERIC:
     case CATEGORY_APART:
-        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_of(d, p, all_types, SHAPE_TYPES);
         pair_scatter(d, p, category == CATEGORY_APART ? 1.5 : 1, category == CATEGORY_APART ? -1e-3 : 1e-3);
         break;
     case CATEGORY_SHALLOW3:
     case CATEGORY_SHALLOW5:
     case CATEGORY_TOUCHING:
-        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_of(d, p, all_types, SHAPE_TYPES);
         pair_scatter(d, p, 1, 1e-3);
         x = pair_size(&p->a, &p->b);
         pair_pull_out(p, category == CATEGORY_SHALLOW3 ? 1e-3 * x : category == CATEGORY_SHALLOW5 ? 1e-5 * x : rng_sign(d) * 1e-12);
         break;
     case CATEGORY_COINCIDENT:
     case CATEGORY_NEAR_COINCIDENT:
-        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_of(d, p, all_types, SHAPE_TYPES);
         if (category == CATEGORY_NEAR_COINCIDENT) {
             rng_unit_vector(d, u);
             pair_place(p, rng_log_uniform(d, 1e-18, 1e-8), u);
@@ -394,7 +394,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_INSIDE:
         for (k = 0; k < 2; k++) {
-            pair_one(d, p, k, any_kind, SHAPE_TYPES, k ? .01 : .5, k ? .1 : 1);
+            pair_one(d, p, k, all_types, SHAPE_TYPES, k ? .01 : .5, k ? .1 : 1);
             pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .3, 2 * shape_reach(&p->b));
@@ -424,7 +424,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     case CATEGORY_FLAT_CENTRED:
         p->a = random_polygon(d, p->verts[0], rng_uniform(d, .1, 1));
         pair_turn(d, &p->a);
-        pair_one(d, p, 1, any_kind, SHAPE_TYPES, .1, 1);
+        pair_one(d, p, 1, all_types, SHAPE_TYPES, .1, 1);
         pair_turn(d, &p->b);
         if (category == CATEGORY_FLAT) {
             pair_scatter(d, p, .7, 1e-4);
@@ -441,7 +441,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         p->verts[0][5] = (ccd_real_t)x;
         p->a = shape_polytope(p->verts[0], x > 0 ? 2 : 1);
         pair_turn(d, &p->a);
-        pair_one(d, p, 1, any_kind, SHAPE_TYPES, .1, 1);
+        pair_one(d, p, 1, all_types, SHAPE_TYPES, .1, 1);
         pair_turn(d, &p->b);
         pair_scatter(d, p, .5, 1e-4);
         break;
@@ -511,7 +511,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_FAR_6:
     case CATEGORY_FAR_8:
-        pair_of(d, p, any_kind, SHAPE_TYPES);
+        pair_of(d, p, all_types, SHAPE_TYPES);
         pair_scatter(d, p, 1, 1e-3);
         rng_unit_vector(d, u);
         for (k = 0; k < 2; k++)

@@ -316,8 +316,7 @@ static inline answer_t call_entry(const entry_t *e, const shape_t *a, const shap
     X(POSITION, "position not between the witness points") \
     X(MISCOUNTED, "supports miscounted") \
     X(WROTE_OUTPUTS, "outputs written without an answer") \
-    X(STACK, "stack") \
-    X(TAIL, "tail")
+    X(TAIL, "too many support points")
 
 enum {
 #define STABILITY_FAULT_BIT(name, text) FAULT_BIT_##name,
@@ -343,7 +342,7 @@ static inline const char *fault_text(int bit)
 
 /* Faults that this library never has, whatever the entry point. */
 enum {
-    FAULTS_FORBIDDEN = ~(FAULT_MISS_SHALLOW | FAULT_OVER | FAULT_UNDER | FAULT_ZERO | FAULT_DIR_BAD | FAULT_STACK | FAULT_TAIL)
+    FAULTS_FORBIDDEN = ~(FAULT_MISS_SHALLOW | FAULT_OVER | FAULT_UNDER | FAULT_ZERO | FAULT_DIR_BAD | FAULT_TAIL)
 };
 
 /* Where minima are nearly everywhere no proof ends, and the search stops as MPR does. */

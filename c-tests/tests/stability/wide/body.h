@@ -107,17 +107,13 @@ static void wide_farthest(const part_t *s, const quad_t d[3], quad_t o[3])
 
 /* --- callbacks -------------------------------------------------------------------- */
 
-static unsigned long body_calls;      /* of support functions */
-static const char *body_stack_lowest; /* the lowest stack frame that one was called from */
+static unsigned long body_calls; /* of support functions */
 
 static void body_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
 {
     const double d[3] = {(double)dir->v[0], (double)dir->v[1], (double)dir->v[2]};
-    const char *here = (const char *)__builtin_frame_address(0);
     double o[3];
     body_calls++;
-    if (here < body_stack_lowest)
-        body_stack_lowest = here;
     narrow_body((const body_t *)obj, nowhere, d, o);
     for (int i = 0; i < 3; i++)
         out->v[i] = (ccd_real_t)o[i];
