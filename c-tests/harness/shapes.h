@@ -17,10 +17,9 @@
 #include <string.h>
 
 /* The shapes of every C test, and of the benchmark in Rust through bench/measuring/callbacks.c.
- * A new one has a row here and no `default:` anywhere to hide behind: what is missing does
- * not compile, its support point (shape_local_support) and in truth.h the same in full
- * precision (truth_support), its size (shape_reach) and, where there is one, its exact depth
- * (truth_core). Placing (shape_move, shape_turn) is the same for all. */
+ * No switch over them has a `default:`, so what a new one lacks does not compile: its support
+ * point (shape_local_support) and in truth.h the same in double (truth_support), its size
+ * (shape_reach) and, where there is one, its exact depth (truth_vertices). */
 #pragma GCC diagnostic error "-Wswitch"
 typedef enum {
     SHAPE_SPHERE,    /* p = radius */

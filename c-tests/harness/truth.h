@@ -182,12 +182,11 @@ static inline double largest_coordinate(const shape_t *a, const shape_t *b)
 
 /* --- enumeration ------------------------------------------------------------- */
 
-enum { TRUTH_EDGES = TRUTH_ENUMERATED * (TRUTH_ENUMERATED - 1) / 2, TRUTH_NORMALS = 1024 };
+enum { TRUTH_EDGES = TRUTH_ENUMERATED * (TRUTH_ENUMERATED - 1) / 2 };
 
 typedef struct {
-    int nv, nn, ne, full;
+    int nv, ne, has_faces;
     truth_real v[TRUTH_ENUMERATED][3]; /* world, relative to A's position */
-    truth_real n[TRUTH_NORMALS][3];    /* face normals, either sign */
     int e[TRUTH_EDGES][2];
     truth_real rho;
 } truth_core_t;
@@ -230,59 +229,12 @@ static inline void truth_add_edge(truth_core_t *c, int i, int j)
     c->ne++;
 }
 
-/* Faces and edges of the hull: planes through three vertices that have all others
- * on one side, within 1e-9 of the size (a face too many does no harm). Where there
- * is no such plane (segment, point) every pair of vertices is an edge. */
-static inline void truth_faces(truth_core_t *c)
-{
-    int q;
-    truth_real size = 0, d[3], e[3], n[3];
-    for (int i = 1; i < c->nv; i++) {
-        truth_minus(c->v[i], c->v[0], d);
-        size = fmaxl(size, sqrtl(truth_dot(d, d)));
-    }
-    for (int i = 0; i < c->nv; i++)
-        for (int j = i + 1; j < c->nv; j++)
-            for (int k = j + 1; k < c->nv; k++) {
-                int above = 0, below = 0;
-                truth_minus(c->v[j], c->v[i], d);
-                truth_minus(c->v[k], c->v[i], e);
-                if (!truth_cross(d, e, n))
-                    continue;
-                for (int m = 0; m < c->nv && !(above && below); m++) {
-                    truth_minus(c->v[m], c->v[i], d);
-                    truth_real x = truth_dot(d, n);
-                    above += x > 1e-9L * size;
-                    below += x < -1e-9L * size;
-                }
-                if (above && below)
-                    continue;
-                truth_add_edge(c, i, j);
-                truth_add_edge(c, i, k);
-                truth_add_edge(c, j, k);
-                for (q = 0; q < c->nn; q++)
-                    if (fabsl(truth_dot(c->n[q], n)) > 1 - 1e-18L)
-                        break;
-                if (q < c->nn)
-                    continue;
-                if (c->nn == TRUTH_NORMALS) {
-                    c->full = 1;
-                    return;
-                }
-                memcpy(c->n[c->nn++], n, sizeof n);
-            }
-    if (c->nn == 0)
-        for (int i = 0; i < c->nv; i++)
-            for (int j = i + 1; j < c->nv; j++)
-                truth_add_edge(c, i, j);
-}
-
 /* The vertices and the ball of a shape that is both together; 0 when it is none. */
 static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
 {
     truth_real local[TRUTH_ENUMERATED][3];
     memset(local, 0, sizeof local);
-    c->nv = c->nn = c->ne = c->full = 0;
+    c->nv = c->ne = c->has_faces = 0;
     c->rho = 0;
     switch (s->type) {
     case SHAPE_SPHERE:
@@ -323,17 +275,8 @@ static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], t
     return 1;
 }
 
-/* And the faces and edges of their hull. */
-static inline int truth_core(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
-{
-    if (!truth_vertices(s, origin, c))
-        return 0;
-    truth_faces(c);
-    return !c->full;
-}
-
 typedef struct {
-    const truth_core_t *a, *b;
+    truth_core_t a, b;
     truth_real best, n[3], rho;
 } truth_search_t;
 
@@ -342,13 +285,13 @@ static inline void truth_try(truth_search_t *t, const truth_real n[3])
 {
     const truth_real limit = t->best - t->rho;
     truth_real most = -LDBL_MAX, least = LDBL_MAX, x;
-    for (int i = 0; i < t->a->nv; i++) {
-        x = truth_dot(n, t->a->v[i]);
+    for (int i = 0; i < t->a.nv; i++) {
+        x = truth_dot(n, t->a.v[i]);
         if (x > most)
             most = x;
     }
-    for (int i = 0; i < t->b->nv; i++) {
-        x = truth_dot(n, t->b->v[i]);
+    for (int i = 0; i < t->b.nv; i++) {
+        x = truth_dot(n, t->b.v[i]);
         if (x < least) {
             least = x;
             if (!(most - least < limit))
@@ -367,6 +310,43 @@ static inline void truth_try_both(truth_search_t *t, const truth_real n[3])
     m[2] = -n[2];
     truth_try(t, n);
     truth_try(t, m);
+}
+
+/* Finds the edges of a core's hull and takes the normals of its faces as candidates: of the planes through
+ * three vertices that have all others on one side, within 1e-9 of the size (a face too many does no harm).
+ * Where there is no such plane (segment, point) every pair of vertices is an edge. */
+static inline void truth_faces(truth_search_t *t, truth_core_t *c)
+{
+    truth_real size = 0, d[3], e[3], n[3];
+    for (int i = 1; i < c->nv; i++) {
+        truth_minus(c->v[i], c->v[0], d);
+        size = fmaxl(size, sqrtl(truth_dot(d, d)));
+    }
+    for (int i = 0; i < c->nv; i++)
+        for (int j = i + 1; j < c->nv; j++)
+            for (int k = j + 1; k < c->nv; k++) {
+                int above = 0, below = 0;
+                truth_minus(c->v[j], c->v[i], d);
+                truth_minus(c->v[k], c->v[i], e);
+                if (!truth_cross(d, e, n))
+                    continue;
+                for (int m = 0; m < c->nv && !(above && below); m++) {
+                    truth_minus(c->v[m], c->v[i], d);
+                    truth_real x = truth_dot(d, n);
+                    above += x > 1e-9L * size;
+                    below += x < -1e-9L * size;
+                }
+                if (above && below)
+                    continue;
+                c->has_faces = 1;
+                truth_try_both(t, n);
+                truth_add_edge(c, i, j);
+                truth_add_edge(c, i, k);
+                truth_add_edge(c, j, k);
+            }
+    for (int i = 0; i < c->nv && !c->has_faces; i++)
+        for (int j = i + 1; j < c->nv; j++)
+            truth_add_edge(c, i, j);
 }
 
 /* The point of segment p q nearest to the origin, if nearer than all before. */
@@ -388,16 +368,14 @@ static inline void truth_nearest(const truth_real p[3], const truth_real q[3], t
 
 static inline void truth_enumerate(truth_search_t *t)
 {
-    const truth_core_t *a = t->a, *b = t->b;
+    const truth_core_t *a = &t->a, *b = &t->b;
     truth_real d[3], e[3], n[3], p[3], q[3], least = LDBL_MAX, point[3] = {0, 0, 0};
     static const truth_real axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     t->best = LDBL_MAX;
     for (int i = 0; i < 3; i++)
         truth_try_both(t, axes[i]);
-    for (int i = 0; i < a->nn; i++)
-        truth_try_both(t, a->n[i]);
-    for (int i = 0; i < b->nn; i++)
-        truth_try_both(t, b->n[i]);
+    truth_faces(t, &t->a);
+    truth_faces(t, &t->b);
     for (int i = 0; i < a->ne; i++) {
         truth_minus(a->v[a->e[i][1]], a->v[a->e[i][0]], d);
         for (int j = 0; j < b->ne; j++) {
@@ -424,7 +402,7 @@ static inline void truth_enumerate(truth_search_t *t)
     }
     /* a core that is a segment or a point has directions across it that no pair of
      * edges names */
-    for (int j = 0; j < 2 && (a->nn == 0 || b->nn == 0); j++) {
+    for (int j = 0; j < 2 && !(a->has_faces && b->has_faces); j++) {
         const truth_core_t *c = j ? b : a;
         for (int i = 0; i < 3 * c->ne; i++) {
             truth_minus(c->v[c->e[i / 3][1]], c->v[c->e[i / 3][0]], d);
@@ -656,22 +634,16 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double wi
  * searched (1e-12 of the size is about what double can). */
 static inline truth_t truth_depth_within(const shape_t *a, const shape_t *b, double width)
 {
-    truth_core_t *core = (truth_core_t *)malloc(2 * sizeof *core);
+    truth_search_t t;
     truth_t out;
-    if (core && truth_core(a, a->pos, &core[0]) && truth_core(b, a->pos, &core[1])) {
-        truth_search_t t;
-        t.a = &core[0];
-        t.b = &core[1];
-        t.rho = core[0].rho + core[1].rho;
-        truth_enumerate(&t);
-        out.depth = out.lower = (double)t.best;
-        for (int i = 0; i < 3; i++)
-            out.n[i] = (double)t.n[i];
-        out.enumerated = 1;
-    } else {
-        out = truth_branch(a, b, width, 40000);
-    }
-    free(core);
+    if (!truth_vertices(a, a->pos, &t.a) || !truth_vertices(b, a->pos, &t.b))
+        return truth_branch(a, b, width, 40000);
+    t.rho = t.a.rho + t.b.rho;
+    truth_enumerate(&t);
+    out.depth = out.lower = (double)t.best;
+    for (int i = 0; i < 3; i++)
+        out.n[i] = (double)t.n[i];
+    out.enumerated = 1;
     return out;
 }
 
