@@ -1,11 +1,9 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The configurations where penetration methods are known to fail: for each the
- * shapes, and what the truth must come to. T numbers are this project's own list; the
- * others are cases of other projects' tests and reports, configurations and numbers
- * alone, whose depth is known: others are but one more pair of a category (categories.h), which
- * has many. A new one is a row of configuration_rows. */
+/* Configurations where penetration methods are known to fail: the shapes, and the depth that the
+ * truth must have. T and U numbers are this project's own; the others are cases of other projects'
+ * tests and reports, configurations and numbers alone. A new one is a row of configuration_rows. */
 
 #ifndef STABILITY_CONFIGURATIONS_H
 #define STABILITY_CONFIGURATIONS_H
@@ -15,16 +13,22 @@
 
 #include <stdio.h>
 
+enum {
+    EVERYWHERE = 1, /* once more far from the origin: rounding must not become failure */
+    SURFACE = 2,    /* minima form a curve or surface */
+    TOUCHING = 4,   /* hit and miss are both right */
+    TOUCHING_IN_SINGLE = 8,
+    MISSED = 16,       /* an exact touch: every call returns a miss */
+    NOT_IN_SINGLE = 32 /* the difference is below float's resolution */
+};
+
 typedef struct {
     char id[48];
     const char *what;
     shape_t a, b;
-    double expected; /* what the truth comes to, or NAN: whatever it is */
+    double expected; /* signed depth, or NAN: unknown */
     double within;   /* absolute bound of that comparison */
-    int surface;     /* minima form a curve or surface */
-    int touching;    /* hit and miss are both right */
-    int missed;      /* an exact touch: every call says miss */
-    int not_single;  /* the difference is below float's resolution */
+    int flags;
 } configuration_t;
 
 typedef void configuration_visit_t(const configuration_t *c);
@@ -80,14 +84,6 @@ typedef struct {
     double within, single; /* bound of that comparison, and what single precision adds */
     int flags;
 } configuration_row_t;
-
-enum {
-    EVERYWHERE = 1, /* once more far from the origin: rounding must not become failure */
-    SURFACE = 2,
-    TOUCHING = 4,
-    TOUCHING_IN_SINGLE = 8,
-    MISSED = 16
-};
 
 static const configuration_row_t configuration_rows[] = {
     {"T01", "cylinder on cylinder, a millimetre deep", {CYLINDER(.5, .5)},
@@ -286,56 +282,46 @@ static inline shape_t body_shape(const body_row_t *row)
     shape_t s = row->type == SHAPE_POLYTOPE ? shape_polytope(row->verts, row->nverts)
                                             : shape_make(row->type, row->p[0], row->p[1], row->p[2]);
     const double *by = row->by;
-    double r[9];
-    shape_move(&s, row->pos[0], row->pos[1], row->pos[2]);
-    if (row->by_rotation) {
-        memcpy(r, by, sizeof r);
-        shape_move(&s, by[9], by[10], by[11]);
-    } else {
-        rotation_about(by[0], by[1], by[2], by[3], r);
-    }
-    shape_turn(&s, r);
+    double rot[9];
+    rotation_about(by[0], by[1], by[2], by[3], rot);
+    shape_turn(&s, row->by_rotation ? by : rot);
+    shape_move(&s, row->pos[0] + by[9], row->pos[1] + by[10], row->pos[2] + by[11]);
     return s;
 }
 
 static inline int in_single(void) { return sizeof(ccd_real_t) == sizeof(float); }
 
 static inline configuration_t configuration(const char *id, const char *what, shape_t a, shape_t b, double expected,
-                                            double within)
+                                            double within, int flags)
 {
     configuration_t c;
-    memset(&c, 0, sizeof c);
     snprintf(c.id, sizeof c.id, "%s", id);
     c.what = what;
     c.a = a;
     c.b = b;
     c.expected = expected;
     c.within = within;
+    c.flags = flags;
     return c;
 }
 
 static inline void visit_row(configuration_visit_t *visit, const configuration_row_t *row)
 {
     static const double offsets[] = {0, 60, 1e4};
-    configuration_t c = configuration(row->id, row->what, body_shape(&row->a), body_shape(&row->b), row->expected,
-                                      row->within + in_single() * row->single);
-    c.surface = (row->flags & SURFACE) != 0;
-    c.touching = row->flags & TOUCHING || (row->flags & TOUCHING_IN_SINGLE && in_single());
-    c.missed = (row->flags & MISSED) != 0;
-    for (int i = 0; i < (row->flags & EVERYWHERE ? 3 : 1); i++) {
-        configuration_t moved = c;
-        if (i > 0)
-            snprintf(moved.id, sizeof moved.id, "%.24s +%g", c.id, offsets[i]);
+    const int flags = row->flags | (in_single() && row->flags & TOUCHING_IN_SINGLE ? TOUCHING : 0);
+    for (int i = 0; i < (flags & EVERYWHERE ? 3 : 1); i++) {
+        configuration_t c = configuration(row->id, row->what, body_shape(&row->a), body_shape(&row->b), row->expected,
+                                          row->within + in_single() * row->single, flags);
         for (int k = 0; k < 3; k++) {
-            moved.a.pos[k] += (ccd_real_t)offsets[i];
-            moved.b.pos[k] += (ccd_real_t)offsets[i];
+            c.a.pos[k] += (ccd_real_t)offsets[i];
+            c.b.pos[k] += (ccd_real_t)offsets[i];
         }
         if (i > 0) {
-            moved.within += pair_noise(&moved.a, &moved.b);
-            /* the roundings of the positions themselves */
-            moved.within += 4 * real_eps() * offsets[i];
+            snprintf(c.id, sizeof c.id, "%.24s +%g", row->id, offsets[i]);
+            /* the positions themselves round too */
+            c.within += pair_noise(&c.a, &c.b) + 4 * real_eps() * offsets[i];
         }
-        visit(&moved);
+        visit(&c);
     }
 }
 
@@ -348,41 +334,41 @@ static inline void visit_scaled(configuration_visit_t *visit)
         char id[48];
         snprintf(id, sizeof id, "T07 x1e%d", i);
         shape_move(&b, 8e-4 * s, 1e-4 * s, 5e-5 * s);
-        configuration_t c = configuration(id, "millimetre cubes", a, b, 2e-4 * s, (1e-15 + in_single() * 1e-9) * s);
+        configuration_t c = configuration(id, "millimetre cubes", a, b, 2e-4 * s, (1e-15 + in_single() * 1e-9) * s, 0);
         visit(&c);
     }
 }
 
-/* A cube and the same cube beside it along its own y, a gap of a few ulps between them:
- * `gaps` in metres, in cubes where those are larger than a metre, and the last always. */
-static inline void visit_kissing(configuration_visit_t *visit, const double frame[9], const double *gaps, int n)
+/* A cube and the same cube beside it along its own y: gaps in ulps of a metre, or of a larger cube, and
+ * the last one as a part of the cube. */
+static inline void visit_kissing(configuration_visit_t *visit)
 {
+    static const double gaps[] = {0, 1e-16, 2.5e-16, 1e-15, -1e-16, -2.5e-16, -1e-15, -1e-6};
     static const double dims[] = {.01, .25, .5, 10, 1000};
+    double rot[9];
+    rotation_quaternion(.3, .5, -.2, .7, rot);
     for (int i = 0; i < 5; i++)
-        for (int k = 0; k < n; k++) {
-            double dim = dims[i], gap = gaps[k] * (fabs(gaps[k]) > 1e-9 ? dim : fmax(1, dim)), at = dim + gap;
+        for (int k = 0; k < 8; k++) {
+            const int is_last = k == 7;
+            double dim = dims[i], gap = gaps[k] * (is_last ? dim : fmax(1, dim)), at = dim + gap;
             shape_t a = shape_box(dim / 2, dim / 2, dim / 2), b;
             char id[48];
             snprintf(id, sizeof id, "T15 dim %g gap %g", dim, gap);
-            shape_turn(&a, frame);
+            shape_turn(&a, rot);
             b = a;
-            shape_move(&b, frame[1] * at, frame[4] * at, frame[7] * at);
-            configuration_t c = configuration(id, "kissing cubes", a, b, -gap, (1e-15 + in_single() * 1e-6) * dim);
-            c.touching = fabs(gap) < 10 * real_eps() * dim;
-            c.not_single = fabs(gaps[k]) > 1e-9;
+            shape_move(&b, rot[1] * at, rot[4] * at, rot[7] * at);
+            configuration_t c = configuration(id, "kissing cubes", a, b, -gap, (1e-15 + in_single() * 1e-6) * dim,
+                                              (is_last ? NOT_IN_SINGLE : 0) | (fabs(gap) < 10 * real_eps() * dim ? TOUCHING : 0));
             visit(&c);
         }
 }
 
 static inline void for_each_configuration(configuration_visit_t *visit)
 {
-    static const double gaps[] = {0, 1e-16, 2.5e-16, 1e-15, -1e-16, -2.5e-16, -1e-15, -1e-6};
-    double frame[9];
     for (size_t i = 0; i < sizeof configuration_rows / sizeof configuration_rows[0]; i++)
         visit_row(visit, &configuration_rows[i]);
     visit_scaled(visit);
-    rotation_quaternion(.3, .5, -.2, .7, frame);
-    visit_kissing(visit, frame, gaps, 8);
+    visit_kissing(visit);
 }
 
 #endif
