@@ -2,14 +2,14 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Convex bodies of many kinds, with the same support function as a callback and in 128
- * bits. A body is a part, plus (Minkowski) another, plus a ball; turned, and put somewhere. */
+ * bits. A body is the Minkowski sum of one or two parts and a ball, in a pose. */
 
 #ifndef STABILITY_WIDE_BODY_H
 #define STABILITY_WIDE_BODY_H
 
 #include "harness/random.h"
 
-/* 113 bits on every platform of the tests; x86's long double has 64. */
+/* 113 bits; x86's long double has 64. */
 __extension__ typedef __float128 quad_t;
 #ifdef __clang__
 extern quad_t powf128(quad_t, quad_t); /* the C library's, declared by its headers for gcc alone */
@@ -43,9 +43,9 @@ typedef struct {
     double centre[3]; /* in the local frame */
 } body_t;
 
-static const double nowhere[3] = {0, 0, 0};
+static const double world_origin[3] = {0, 0, 0};
 
-/* A root by two steps of Newton's: 106 bits. */
+/* Returns the square root, by a step of Newton's from double: 106 bits. */
 static quad_t quad_root(quad_t x)
 {
     quad_t y = sqrt((double)x);
@@ -66,7 +66,7 @@ static void narrow_farthest(const part_t *s, const double d[3], double o[3])
     memcpy(o, best, 3 * sizeof *o);
 }
 
-/* Of those that double precision cannot tell from the farthest. */
+/* The farthest in 128 bits of the points that are farthest in double. */
 static void wide_farthest(const part_t *s, const quad_t d[3], quad_t o[3])
 {
     const double n[3] = {(double)d[0], (double)d[1], (double)d[2]}, *v = s->points;
@@ -114,7 +114,7 @@ static void body_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out
     const double d[3] = {(double)dir->v[0], (double)dir->v[1], (double)dir->v[2]};
     double o[3];
     body_calls++;
-    narrow_body((const body_t *)obj, nowhere, d, o);
+    narrow_body((const body_t *)obj, world_origin, d, o);
     for (int i = 0; i < 3; i++)
         out->v[i] = (ccd_real_t)o[i];
 }
@@ -129,7 +129,7 @@ static void body_centre(const void *obj, ccd_vec3_t *out)
 
 /* --- sizes ------------------------------------------------------------------------ */
 
-/* No point is farther from `at` than this, and one at least about as far. */
+/* Returns the radius of a ball about the position that holds the body, at most 1.7 times the least. */
 static double body_reach(const body_t *s)
 {
     double most = 0;

@@ -1,17 +1,16 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The least depth h(n) = n.s(n) over all unit n of D = A - B, between bounds, in 128 bits.
+/* Bounds of the minimum of h(n) = n.s(n) over all unit n of D = A - B, in 128 bits.
  *
  * An incremental hull of support points, expanded at the face whose plane has the least
- * signed distance from the origin. Every h(n) met is an upper bound: a negative one proves
+ * signed distance from the origin. Every h(n) evaluated is an upper bound: a negative one proves
  * that the bodies are apart. Where all planes have the origin inside, the least distance is
  * a lower bound: the hull lies in D. Planes are off by some 1e-30 of the size, so the
- * bounds hold as they stand in double precision. The hull is convex throughout: a point
- * is above a face or not, and what is nearly on it is on it.
+ * bounds hold in double precision without a margin.
  *
- * It knows nothing of the library's own polytope: planes come from corners, the visible
- * faces from a flood, and a hull that rounding has spoilt ends the search. */
+ * It shares nothing with the library's polytope: planes come from corners, visible faces from a
+ * flood fill, and a hull that rounding has spoilt ends the search. */
 
 #ifndef STABILITY_WIDE_BOUNDS_H
 #define STABILITY_WIDE_BOUNDS_H
@@ -57,8 +56,8 @@ static void quad_less(const quad_t a[3], const quad_t b[3], quad_t o[3])
         o[i] = a[i] - b[i];
 }
 
-/* The support point of D along n, any length; returns n.s. Points are taken from where a
- * is, so that nothing is lost far from the world's origin. */
+/* Writes the support point of D along n, of any length, and returns n.s. Points are relative to the
+ * position of a, so that nothing is lost far from the world's origin. */
 static quad_t wide_difference(const body_t *a, const body_t *b, const quad_t n[3], quad_t s[3])
 {
     quad_t m[3], t[3];
@@ -70,7 +69,7 @@ static quad_t wide_difference(const body_t *a, const body_t *b, const quad_t n[3
     return quad_dot(n, s);
 }
 
-/* h of a direction of any length. */
+/* Returns h of a direction of any length. */
 static double wide_value(const body_t *a, const body_t *b, const double n[3])
 {
     const quad_t q[3] = {n[0], n[1], n[2]};
@@ -78,8 +77,9 @@ static double wide_value(const body_t *a, const body_t *b, const double n[3])
     return (double)(wide_difference(a, b, q, s) / quad_root(quad_dot(q, q)));
 }
 
-/* Asks along n: the point becomes number `points`, the upper bound falls if it can. */
-static quad_t hull_ask(wide_hull_t *w, const quad_t n[3])
+/* Evaluates the support function along n: the point becomes number `points`, the upper bound falls if it
+ * can. Returns n.s. */
+static quad_t hull_sample(wide_hull_t *w, const quad_t n[3])
 {
     const quad_t h = wide_difference(w->a, w->b, n, w->v[w->points]), l = quad_root(quad_dot(n, n));
     w->found.supports++;
@@ -91,7 +91,7 @@ static quad_t hull_ask(wide_hull_t *w, const quad_t n[3])
     return h;
 }
 
-/* A face with its plane; 0 where it has no area. */
+/* Makes a face and its plane. Returns 0 where it has no area. */
 static int hull_face(wide_hull_t *w, int i, int j, int k, int *made)
 {
     quad_t e[3], g[3];
@@ -111,58 +111,58 @@ static int hull_face(wide_hull_t *w, int i, int j, int k, int *made)
     return f->length > 1e-40 * w->size * w->size && isfinite(f->key);
 }
 
-/* Four points that are not in a plane: 0 where D has no inside. */
+/* Samples along n; the point replaces the last of the first `points` if it is farther from the first, or
+ * from the line through it along `line`. */
+static void hull_extend(wide_hull_t *w, int points, const quad_t n[3], const quad_t *line, quad_t *farthest2)
+{
+    quad_t x[3], across[3];
+    w->points = points;
+    hull_sample(w, n);
+    quad_less(w->v[points], w->v[0], x);
+    if (line) {
+        quad_cross(line, x, across);
+        memcpy(x, across, sizeof x);
+    }
+    if (quad_dot(x, x) > *farthest2) {
+        *farthest2 = quad_dot(x, x);
+        memcpy(w->v[points - 1], w->v[points], sizeof w->v[points]);
+    }
+}
+
+/* Makes a tetrahedron. Returns 0 where D has no volume. */
 static int hull_begin(wide_hull_t *w)
 {
     static const int corners[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
     static const int twins[4][3] = {{1, 2, 3}, {3, 2, 0}, {1, 3, 0}, {2, 1, 0}};
-    quad_t u[3] = {0.9, 0.3, 0.31}, n[3], x[3], best, h;
+    static const quad_t axes[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+    quad_t u[3] = {0.9, 0.3, 0.31}, n[3], x[3], farthest2, h;
     int i, made;
     w->points = w->faces = w->frees = 0;
-    hull_ask(w, u);
+    hull_sample(w, u);
     for (i = 0; i < 3; i++)
         u[i] = -u[i];
     w->points = 1;
-    hull_ask(w, u);
-    /* farthest from the first in six directions, then from the line, then from the plane */
-    w->points = 2;
-    for (best = 0, i = 0; i < 7; i++) {
-        quad_less(w->v[i ? 2 : 1], w->v[0], x);
-        if (quad_dot(x, x) > best) {
-            best = quad_dot(x, x);
-            memcpy(w->v[1], w->v[i ? 2 : 1], sizeof w->v[1]);
-        }
-        for (int k = 0; k < 3; k++)
-            n[k] = k == i / 2 ? (i % 2 ? 1 : -1) : 0;
-        if (i < 6)
-            hull_ask(w, n);
-    }
-    quad_less(w->v[1], w->v[0], u);
-    if (!(best > 0))
+    hull_sample(w, u);
+    /* farthest from the first, then from the line, then from the plane */
+    quad_less(w->v[1], w->v[0], x);
+    for (farthest2 = quad_dot(x, x), i = 0; i < 6; i++)
+        hull_extend(w, 2, axes[i], NULL, &farthest2);
+    if (!(farthest2 > 0))
         return 0;
-    w->points = 3;
-    for (best = 0, i = 0; i < 6; i++) {
-        quad_t e[3], across[3];
-        for (int k = 0; k < 3; k++)
-            e[k] = k == i / 2 ? (i % 2 ? 1 : -1) : 0;
-        quad_cross(u, e, n);
-        hull_ask(w, n);
-        quad_less(w->v[3], w->v[0], x);
-        quad_cross(u, x, across);
-        if (quad_dot(across, across) > best) {
-            best = quad_dot(across, across);
-            memcpy(w->v[2], w->v[3], sizeof w->v[2]);
-        }
+    quad_less(w->v[1], w->v[0], u);
+    for (farthest2 = 0, i = 0; i < 6; i++) {
+        quad_cross(u, axes[i], n);
+        hull_extend(w, 3, n, u, &farthest2);
     }
-    if (!(best > 0))
+    if (!(farthest2 > 0))
         return 0;
     quad_less(w->v[2], w->v[0], x);
     quad_cross(u, x, n);
-    h = hull_ask(w, n) - quad_dot(n, w->v[0]);
+    h = hull_sample(w, n) - quad_dot(n, w->v[0]);
     memcpy(w->v[4], w->v[3], sizeof w->v[4]);
     for (int k = 0; k < 3; k++)
         n[k] = -n[k];
-    if (!(hull_ask(w, n) - quad_dot(n, w->v[0]) > h)) {
+    if (!(hull_sample(w, n) - quad_dot(n, w->v[0]) > h)) {
         memcpy(w->v[3], w->v[4], sizeof w->v[3]);
         for (int k = 0; k < 3; k++)
             n[k] = -n[k];
@@ -188,29 +188,30 @@ static int hull_begin(wide_hull_t *w)
     return 1;
 }
 
-/* Whether point p is above the face. */
-static int hull_sees(const wide_hull_t *w, int f, int p)
+/* Returns whether the face is visible from point p. */
+static int hull_is_visible(const wide_hull_t *w, int f, int p)
 {
     const wide_face_t *x = &w->face[f];
     return quad_dot(x->n, w->v[p]) - x->d > 1e-29 * x->length * w->size;
 }
 
-/* Makes the newest point a corner. `first` is below it. 0: spoilt by rounding. */
+/* Adds the newest point, from which face `first` is visible. Returns 0 where rounding has spoilt the hull. */
 static int hull_insert(wide_hull_t *w, int first)
 {
-    static int stack[BOUNDS_FACES], rim[BOUNDS_FACES][3], made[BOUNDS_FACES], start[BOUNDS_POINTS];
+    static int stack[BOUNDS_FACES], made[BOUNDS_FACES], start[BOUNDS_POINTS];
+    static int horizon[BOUNDS_FACES][3]; /* two corners, the face beyond */
     const int p = w->points;
-    int depth = 1, rims = 0, seen = 0, i, k;
+    int depth = 1, edges = 0, seen = 0, i, k;
     stack[0] = first;
     w->face[first].visible = p;
-    /* the visible faces stay in `stack`; what is beyond is the rim */
+    /* the visible faces stay in `stack` */
     while (seen < depth) {
         const int f = stack[seen++];
         for (i = 0; i < 3; i++) {
             const int g = w->face[f].twin[i];
             if (w->face[g].visible == p)
                 continue;
-            if (hull_sees(w, g, p)) {
+            if (hull_is_visible(w, g, p)) {
                 w->face[g].visible = p;
                 stack[depth++] = g;
             }
@@ -223,32 +224,32 @@ static int hull_insert(wide_hull_t *w, int first)
             const wide_face_t *f = &w->face[stack[seen]];
             if (w->face[f->twin[i]].visible == p)
                 continue;
-            if (start[f->corner[i]] >= 0 || rims == BOUNDS_FACES)
+            if (start[f->corner[i]] >= 0 || edges == BOUNDS_FACES)
                 return 0;
-            start[f->corner[i]] = rims;
-            rim[rims][0] = f->corner[i];
-            rim[rims][1] = f->corner[(i + 1) % 3];
-            rim[rims++][2] = f->twin[i];
+            start[f->corner[i]] = edges;
+            horizon[edges][0] = f->corner[i];
+            horizon[edges][1] = f->corner[(i + 1) % 3];
+            horizon[edges++][2] = f->twin[i];
         }
     /* one loop */
-    for (i = 0, k = 0; rims && i < rims; i++) {
-        k = start[rim[k][1]];
-        if (k < 0 || (k == 0) != (i == rims - 1))
+    for (i = 0, k = 0; edges && i < edges; i++) {
+        k = start[horizon[k][1]];
+        if (k < 0 || (k == 0) != (i == edges - 1))
             return 0;
     }
-    if (!rims || w->faces + rims > BOUNDS_FACES)
+    if (!edges || w->faces + edges > BOUNDS_FACES)
         return 0;
-    for (i = 0; i < rims; i++)
-        if (!hull_face(w, rim[i][0], rim[i][1], p, &made[i]))
+    for (i = 0; i < edges; i++)
+        if (!hull_face(w, horizon[i][0], horizon[i][1], p, &made[i]))
             return 0;
-    for (i = 0; i < rims; i++) {
-        const int next = start[rim[i][1]];
-        wide_face_t *beyond = &w->face[rim[i][2]];
-        w->face[made[i]].twin[0] = rim[i][2];
+    for (i = 0; i < edges; i++) {
+        const int next = start[horizon[i][1]];
+        wide_face_t *beyond = &w->face[horizon[i][2]];
+        w->face[made[i]].twin[0] = horizon[i][2];
         w->face[made[i]].twin[1] = made[next];
         w->face[made[next]].twin[2] = made[i];
         for (k = 0; k < 3; k++)
-            if (beyond->corner[k] == rim[i][1] && beyond->corner[(k + 1) % 3] == rim[i][0])
+            if (beyond->corner[k] == horizon[i][1] && beyond->corner[(k + 1) % 3] == horizon[i][0])
                 beyond->twin[k] = made[i];
     }
     for (seen = 0; seen < depth; seen++) {
@@ -259,7 +260,7 @@ static int hull_insert(wide_hull_t *w, int first)
     return 1;
 }
 
-/* Bounds no more than `gap` apart, by at most so many support points; or earlier, once the
+/* Returns bounds no more than `gap` apart, by at most so many support points; or earlier, once the
  * upper bound is below `apart` or the lower above `deep`. */
 static bounds_t wide_bounds(const body_t *a, const body_t *b, double gap, double apart, double deep, int most)
 {
@@ -270,7 +271,7 @@ static bounds_t wide_bounds(const body_t *a, const body_t *b, double gap, double
     w.found.upper = HUGE_VAL;
     w.found.lower = -HUGE_VAL;
     w.found.supports = 0;
-    if (!hull_begin(&w)) /* flat: its normal has been asked, and it touches at most */
+    if (!hull_begin(&w)) /* flat: sampled along its normal, and it touches at most */
         return w.found;
     while (w.points + 1 < BOUNDS_POINTS && w.found.supports < most) {
         double least = HUGE_VAL;
@@ -284,8 +285,8 @@ static bounds_t wide_bounds(const body_t *a, const body_t *b, double gap, double
             w.found.lower = fmax(w.found.lower, least);
         if (near < 0 || w.found.upper - least <= gap || w.found.upper < apart || w.found.lower > deep)
             break;
-        hull_ask(&w, w.face[near].n);
-        if (!hull_sees(&w, near, w.points) || !hull_insert(&w, near))
+        hull_sample(&w, w.face[near].n);
+        if (!hull_is_visible(&w, near, w.points) || !hull_insert(&w, near))
             break;
     }
     return w.found;

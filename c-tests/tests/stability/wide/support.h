@@ -1,10 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Support functions of the bodies, written once for every number type: body.h includes
- * this with REAL (the type), FN (the functions' names), ROOT and POWER. */
+/* Support functions of the bodies, once for each number type: body.h includes this with REAL
+ * (the type), FN (the functions' names), ROOT and POWER. */
 
-/* The point of one part that is farthest along d, which need not be unit. */
+/* Writes the support point of a part along d, of any length. */
 static void FN(part)(const part_t *s, const REAL d[3], REAL o[3])
 {
     const double *p = s->p;
@@ -73,7 +73,7 @@ static void FN(part)(const part_t *s, const REAL d[3], REAL o[3])
                 o[i] = p[0] * d[i] / x;
         }
         break;
-    case PART_CUT_BALL: { /* without what is higher than p[1]: round wherever it is asked but there */
+    case PART_CUT_BALL: { /* a ball without its cap above p[1] */
         const REAL rim = ROOT((REAL)p[0] * p[0] - (REAL)p[1] * p[1]);
         x = ROOT(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
         for (i = 0; i < 3; i++)
@@ -83,7 +83,7 @@ static void FN(part)(const part_t *s, const REAL d[3], REAL o[3])
     }
 }
 
-/* The point of a body that is farthest along d, less `origin`. */
+/* Writes the support point of a body along d, relative to `origin`. */
 static void FN(body)(const body_t *s, const double origin[3], const REAL d[3], REAL o[3])
 {
     REAL e[3], x[3], t[3], l;
