@@ -3,57 +3,55 @@
 
 /* Contacts in motion: sliding, rolling, rocking, hundreds of frames each. From frame
  * to frame the direction turns by more than a degree only where the true minimum does,
- * the depth steps as the truth steps, and the contact position of a resting face moves
- * no faster than the bodies allow. Each motion is run cold, and warm with one state
- * carried along; both find the same depth, and the same place for a resting face.
- * Prints, per motion and method, jumps and largest steps. */
+ * and the contact position of a resting face moves no faster than the bodies allow. Each
+ * motion is run cold, and warm with one state carried along; both have the same depth, and
+ * the same position for a resting face. Prints, per motion and method, jumps and largest steps. */
 
 #include "categories.h"
 
 enum { FRAMES = 300 };
 
-/* Corners are the same points whoever asks, but for those that a search found a hair below
- * the support plane; the points of a round face that stand for it are not, where the
- * normals differ within the tolerance. Metres. */
+/* The resting face, and how far the positions of two methods on it may differ, metres: all methods find
+ * the same corners, except those a hair below the support plane; the points that represent a round face
+ * vary with the normal. */
 enum { NO_FACE, CORNERS, ROUND };
-static const double same_place[] = {HUGE_VAL, sizeof(ccd_real_t) == 8 ? 1e-4 : 1e-3, 5e-3};
+static const double pos_tolerance[] = {HUGE_VAL, sizeof(ccd_real_t) == 8 ? 1e-4 : 1e-3, 5e-3};
 
-/* b moves on a, whose top is at z = 0.2. All is told of the first frame and of the one after the last. */
+/* b moves on a, whose top is at z = 0.2. Pairs of numbers are values at the first frame and after the last. */
 typedef struct {
     const char *name;
     shape_t a, b;
-    double step;        /* how far a point of either body moves in a frame, at most */
-    int face;           /* a resting face contact: pos must not run away, and is the same for every
-                         * method, warm or cold */
-    double first[4];    /* b's own turn: axis, angle */
-    double axis[3], turn[2]; /* then about this, rad; */
-    int swings;         /* there and back, twice, by so much to either side */
+    double step;     /* the most that a point of either body moves in a frame */
+    int face;
+    double first[4]; /* b's own rotation: axis, angle */
+    double axis[3], turn[2]; /* and a rotation in motion, rad */
+    int swings;      /* the rotation goes there and back, twice, to either side */
     double from[2], to[2], depth[2];
 } motion_t;
 
 static const double pi = 3.14159265358979323846;
 
-static void pose(const motion_t *m, int frame, shape_t *a, shape_t *b)
+static void place_in_frame(const motion_t *m, int frame, shape_t *a, shape_t *b)
 {
     const double t = (double)frame / FRAMES, angle = m->turn[0] + (m->turn[1] - m->turn[0]) * (m->swings ? sin(4 * pi * t) : t);
-    const double down[3] = {0, 0, -1}, at[3] = {0, 0, 0};
-    double first[9], then[9], all[9], low[3];
+    const double down[3] = {0, 0, -1}, origin[3] = {0, 0, 0};
+    double first[9], moving[9], all[9], lowest[3];
     *a = m->a;
     *b = m->b;
     rotation_about(m->first[0], m->first[1], m->first[2], m->first[3], first);
-    rotation_about(m->axis[0], m->axis[1], m->axis[2], angle, then);
-    rotation_times(then, first, all);
+    rotation_about(m->axis[0], m->axis[1], m->axis[2], angle, moving);
+    rotation_times(moving, first, all);
     shape_turn(b, all);
-    truth_support(b, at, down, low);
+    truth_support(b, origin, down, lowest);
     shape_move(b, m->from[0] + (m->to[0] - m->from[0]) * t, m->from[1] + (m->to[1] - m->from[1]) * t,
-               .2 - low[2] - m->depth[0] - (m->depth[1] - m->depth[0]) * t);
+               .2 - lowest[2] - m->depth[0] - (m->depth[1] - m->depth[0]) * t);
 }
 
-/* A resting contact's position may move so much faster than the bodies: where the
- * touching region loses a corner at one end, its middle moves at half that speed, and
- * a witness that is one of its corners not at all or all the way. */
-static const double pos_speed = 2;
+/* A resting contact's position may move so much faster than the bodies: where the contact patch loses
+ * a corner at one end, its middle moves at half that speed, a witness at a corner at up to the whole. */
+static const double max_pos_speed = 2;
 
+/* Returns degrees. */
 static double angle_between(const double a[3], const double b[3])
 {
     double c[3];
@@ -72,11 +70,11 @@ int main(void)
 #define Z {0, 0, 1}
 #define SAME(x) {x, x}
     const motion_t motions[] = {
-        /* T22: over a plate that is larger than the way */
+        /* T22: on a plate larger than the motion */
         {"box slides on a plate", plate, shape_box(.2, .2, .2), .005, CORNERS, {0}, Z, {0}, 0, {-.7, .1}, {.7, .1}, SAME(.02)},
         {"cylinder slides on a plate", plate, shape_cylinder(.2, .2), .005, ROUND, {0}, Z, {0}, 0, {-.7, .1}, {.7, .1}, SAME(.02)},
         {"box spins on a plate", plate, shape_box(.3, .2, .1), .004, CORNERS, {0}, Z, {0, pi}, 0, {.2, .1}, {.2, .1}, SAME(.01)},
-        /* Over the edge of one of the same size: what touches shrinks to a tenth. */
+        /* Over the edge of a box of the same size: the contact patch shrinks to a tenth. */
         {"box slides off a box", block, block, .0012, CORNERS, {0}, Z, SAME(.3), 0, {0, .05}, {.36, .05}, SAME(.01)},
         {"cylinder rolls on a plate", wide, shape_cylinder(.2, .3), .009, NO_FACE, {1, 0, 0, pi / 2}, Y, {0, 2 * pi}, 0, {-.6, 0},
          {-.6 + .4 * pi, 0}, SAME(.01)},
@@ -87,7 +85,6 @@ int main(void)
          {-.6 + .5 * pi, 0}, SAME(.005)},
         {"hull turns in a hull", large, small, .012, NO_FACE, {0}, {.3, 1, .2}, {0, 2 * pi}, 0, {.1, .05}, {.1, .05}, SAME(0)},
     };
-    const int MOTIONS = (int)(sizeof motions / sizeof motions[0]);
     static const entry_t methods[] = {
 #ifndef OURS_ALONE
         {"libccd MPR", 1, CALL_MPR, STATE_NONE},
@@ -100,11 +97,11 @@ int main(void)
         {"minimum", 0, CALL_PROVEN, STATE_NONE},
         {"minimum, warm", 0, CALL_PROVEN, STATE_ZERO},
     };
-    /* where the first method, a cold one, has the contact in each frame */
-    static double place[FRAMES][3];
+    /* positions by the first method of this library, a cold one */
+    static double cold_pos[FRAMES][3];
     int failed = 0;
     catch_crashes();
-    for (int m = 0; m < MOTIONS; m++)
+    for (size_t m = 0; m < sizeof motions / sizeof motions[0]; m++)
         for (int k = 0; k < (int)(sizeof methods / sizeof methods[0]); k++) {
             const entry_t *e = &methods[k];
             ccd_warm_t warm;
@@ -117,18 +114,14 @@ int main(void)
             memset(&before, 0, sizeof before);
             for (int f = 0; f < FRAMES; f++) {
                 shape_t a, b;
-                ccd_vec3_t unused;
-                pose(&motions[m], f, &a, &b);
+                place_in_frame(&motions[m], f, &a, &b);
                 double tol = e->is_libccd ? 1e-6 : tolerance(TOL_TIGHT) * pair_size(&a, &b);
                 truth_t t = truth_depth(&a, &b);
                 criteria_t q = criteria_of(&a, &b, tol, &t);
-                memset(&unused, 0, sizeof unused);
                 ccd_t ccd = counting_query(tol);
-                answer_t x = call_guarded(e, &a, &b, &ccd, &warm, &unused, 400000);
+                answer_t x = call_guarded(e, &a, &b, &ccd, &warm, NULL, 400000);
                 if (!e->is_libccd) {
-                    int faults = judge(e, &x, &a, &b, &q);
-                    /* the bare local method may be in another valley, and leave it */
-                    faults &= FAULTS_FORBIDDEN;
+                    const int faults = judge(e, &x, &a, &b, &q) & FAULTS_FORBIDDEN;
                     if (faults && wrong++ < 3) {
                         printf("FAILED %s, frame %d, ", motions[m].name, f);
                         print_faulty_answer(e, &x, faults, &t);
@@ -136,13 +129,12 @@ int main(void)
                 }
                 if (f > 0) {
                     double step = 0, turn = angle_between(x.dir, last.dir);
-                    /* the truth turns, or the old direction ties with the new one: as far as
-                     * the method tells minima apart */
-                    int mpr = entry_is_mpr(e);
-                    double tie = mpr ? tolerance(TOL_MPR) * t.depth : 0;
-                    /* nor can MPR keep a near tie that is none any more */
-                    int true_turn = angle_between(t.n, before.n) > 1
-                        || (mpr && (angle_between(last.dir, before.n) > 1 || angle_between(x.dir, t.n) > 1))
+                    /* the truth turns, or the old direction ties with the new one within the
+                     * method's tolerance; MPR may also leave or enter a near tie */
+                    const int is_mpr = entry_is_mpr(e);
+                    const double tie = is_mpr ? tolerance(TOL_MPR) * t.depth : 0;
+                    const int true_turn = angle_between(t.n, before.n) > 1
+                        || (is_mpr && (angle_between(last.dir, before.n) > 1 || angle_between(x.dir, t.n) > 1))
                         || truth_support_value(&a, &b, last.dir) <= t.depth + tie + 2 * (tol + q.noise) + 1e-6 * q.size;
                     jumps += !(turn <= 1) && !true_turn;
                     for (int i = 0; i < 3; i++)
@@ -150,16 +142,16 @@ int main(void)
                     pos_step = fmax(pos_step, sqrt(step));
                 }
                 if (k == 0 || methods[k - 1].is_libccd)
-                    memcpy(place[f], x.pos, sizeof place[f]);
+                    memcpy(cold_pos[f], x.pos, sizeof cold_pos[f]);
                 for (int i = 0; i < 3; i++)
-                    pos_off = fmax(pos_off, fabs(x.pos[i] - place[f][i]));
+                    pos_off = fmax(pos_off, fabs(x.pos[i] - cold_pos[f][i]));
                 last = x;
                 before = t;
             }
             printf("%-28s %-14s jumps %3d  pos step %.3g  off %.2g\n", motions[m].name, e->name, jumps, pos_step, pos_off);
             if (!e->is_libccd
                 && ((jumps > 0 && (e->call != CALL_LOCAL || motions[m].face)) || wrong > 0
-                    || (motions[m].face && (pos_step > pos_speed * motions[m].step || pos_off > same_place[motions[m].face])))) {
+                    || (motions[m].face && (pos_step > max_pos_speed * motions[m].step || pos_off > pos_tolerance[motions[m].face])))) {
                 printf("FAILED the line above\n");
                 failed++;
             }

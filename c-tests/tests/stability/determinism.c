@@ -1,11 +1,10 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The same question gives the same bits. Prints a line for each pair of all categories: a digest
- * of the question, which is what the two objects tell the library, and one of the answers of every
- * call, cold and with the state that they left. Who runs it compares what runs and builds print.
- * (The C library's sine is not the same everywhere, so other processors are compared where the
- * question is the same. Threads are contract/threads.c's.)
+/* The same query gives the same bits. Prints a line for each pair of all categories: a digest of
+ * the objects, by their centres and support points, and one of the answers of every call, cold and
+ * with the state that it left; runs and builds are compared by these lines. (The C library's sine
+ * differs between systems, so processors are compared where the objects' digests are equal.)
  *
  *   determinism [pairs a category] */
 
@@ -20,10 +19,10 @@ static void digest_bytes(uint64_t *digest, const void *memory, size_t size)
         *digest = (*digest ^ byte[i]) * UINT64_C(0x100000001b3);
 }
 
-/* As many bytes on every machine. */
+/* Digests as many bytes on every machine. */
 static void digest_count(uint64_t *digest, uint64_t count) { digest_bytes(digest, &count, sizeof count); }
 
-/* Everything that the calls write, padding excepted. Those that take a state share one. */
+/* Digests everything that the calls write, padding excepted. Those that take a state share one. */
 static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
 {
     const ccd_vec3_t along = {{(ccd_real_t).6, 0, (ccd_real_t).8}};
@@ -34,20 +33,20 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         struct {
             ccd_real_t depth;
             ccd_vec3_t dir, pos;
-        } plain;
+        } outputs;
         ccd_contact_t contact[4];
         ccd_penetration_t full;
         ccd_distance_t distance;
         const call_args_t x = {.warm = warm, .along = &along, .margin1 = (ccd_real_t).01, .max_distance = (ccd_real_t)INFINITY,
-                               .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &plain.depth, .dir = &plain.dir,
-                               .pos = &plain.pos, .contacts = contact, .penetration = &full, .distance = &distance};
-        memset(&plain, 0, sizeof plain);
+                               .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &outputs.depth, .dir = &outputs.dir,
+                               .pos = &outputs.pos, .contacts = contact, .penetration = &full, .distance = &distance};
+        memset(&outputs, 0, sizeof outputs);
         memset(contact, 0, sizeof contact);
         memset(&full, 0, sizeof full);
         memset(&distance, 0, sizeof distance);
         int code = call_library(k, &a, &b, &ccd, &x);
         digest_bytes(digest, &code, sizeof code);
-        digest_bytes(digest, &plain, sizeof plain);
+        digest_bytes(digest, &outputs, sizeof outputs);
         for (int i = 0; i < 4; i++)
             digest_bytes(digest, &contact[i], offsetof(ccd_contact_t, id) + sizeof contact[i].id);
         digest_bytes(digest, &full, offsetof(ccd_penetration_t, point2) + sizeof full.point2);
@@ -60,20 +59,20 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
     digest_count(digest, (uint64_t)a.calls);
 }
 
-/* The centres of both objects, and their support points all around. */
-static void digest_question(uint64_t *digest, const pair_t *p)
+/* Digests the centres of both objects, and their support points all around. */
+static void digest_objects(uint64_t *digest, const pair_t *p)
 {
     enum { DIRECTIONS = 200 };
     shape_t shape[2] = {p->a, p->b};
-    ccd_vec3_t dir, answer;
+    ccd_vec3_t dir, point;
     for (int side = 0; side < 2; side++) {
-        shape_center(&shape[side], &answer);
-        digest_bytes(digest, &answer, sizeof answer);
+        shape_center(&shape[side], &point);
+        digest_bytes(digest, &point, sizeof point);
         for (int k = 0; k < DIRECTIONS; k++) {
             ccdVec3Set(&dir, (ccd_real_t)(k % 7 - 3), (ccd_real_t)(k % 11 - 5), (ccd_real_t)(k % 13) - (ccd_real_t)6.5);
             ccdVec3Normalize(&dir);
-            shape_support(&shape[side], &dir, &answer);
-            digest_bytes(digest, &answer, sizeof answer);
+            shape_support(&shape[side], &dir, &point);
+            digest_bytes(digest, &point, sizeof point);
         }
     }
 }
@@ -84,14 +83,14 @@ int main(int argc, char **argv)
     static pair_t p;
     for (int category = 0; category < CATEGORY_COUNT; category++)
         for (int i = 0; i < pairs; i++) {
-            uint64_t question = UINT64_C(0xcbf29ce484222325), answers = question;
+            uint64_t objects = UINT64_C(0xcbf29ce484222325), answers = objects;
             ccd_warm_t warm;
             memset(&warm, 0, sizeof warm);
             category_pair(category, (uint64_t)i, SHAPE_TIE_SIGN, &p);
-            digest_question(&question, &p);
+            digest_objects(&objects, &p);
             digest_answers(&answers, &p, &warm);
             digest_answers(&answers, &p, &warm);
-            printf("pair %d-%d-%016llx %016llx\n", category, i, (unsigned long long)question, (unsigned long long)answers);
+            printf("pair %d-%d-%016llx %016llx\n", category, i, (unsigned long long)objects, (unsigned long long)answers);
         }
     return 0;
 }

@@ -1,9 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The truth that the other tests are judged by, held against itself: the two
- * methods against each other over random pairs, and against the certified depths
- * of the pair sets.
+/* Checks the truth that other tests are judged by: its two methods against each other
+ * over random pairs, and against the certified depths of the pair sets.
  *
  *   truth random-pairs step pair-set...     every step-th pose of each set */
 
@@ -21,9 +20,9 @@ static void fail(const char *what, const shape_t *a, const shape_t *b, double go
     }
 }
 
-/* Enumeration inside the bounds of the search, along its own direction, and zero
- * after the move that it asks for. */
-static void methods_agree(int pairs)
+/* Checks that the enumerated depth is inside the bounds of branch and bound, is the support value of its
+ * direction, and is zero after moving obj2 by it. */
+static void compare_methods(int pairs)
 {
     int compared = 0;
     for (int i = 0; i < pairs; i++) {
@@ -33,12 +32,13 @@ static void methods_agree(int pairs)
         double u[3], at, eps;
         for (int k = 0; k < 2; k++) {
             int kind = kinds[rng_below(&d, 5)];
-            *(k ? &p.b : &p.a) = kind == SHAPE_TYPES ? random_polygon(&d, p.verts[k], 1) : random_shape_of(&d, p.verts[k], kind, .1, 1);
-            pair_turn(&d, k ? &p.b : &p.a);
+            shape_t *s = pair_side(&p, k);
+            *s = kind == SHAPE_TYPES ? random_polygon(&d, p.verts[k], 1) : random_shape_of(&d, p.verts[k], kind, .1, 1);
+            pair_turn(&d, s);
         }
         rng_unit_vector(&d, u);
         at = rng_uniform(&d, 0, 1) * pair_size(&p.a, &p.b);
-        shape_move(&p.b, at * u[0], at * u[1], at * u[2]);
+        pair_place(&p, at, u);
         truth_t t = truth_depth(&p.a, &p.b);
         truth_t s = truth_branch(&p.a, &p.b, 1e-9, 40000);
         eps = 64 * real_eps() * pair_size(&p.a, &p.b);
@@ -48,19 +48,18 @@ static void methods_agree(int pairs)
         if (!(t.depth >= s.lower - eps && t.depth <= s.depth + eps))
             fail("enumeration outside the search's bounds", &p.a, &p.b, t.depth, s.lower, s.depth);
         if (!(fabs(truth_support_value(&p.a, &p.b, t.n) - t.depth) <= eps))
-            fail("depth is not the support value of its direction", &p.a, &p.b, truth_support_value(&p.a, &p.b, t.n), t.depth, t.depth);
+            fail("depth is not the support value", &p.a, &p.b, truth_support_value(&p.a, &p.b, t.n), t.depth, t.depth);
         if (t.depth > 0) {
             shape_t moved = p.b;
-            shape_move(&moved, (double)p.b.pos[0] + t.depth * t.n[0], (double)p.b.pos[1] + t.depth * t.n[1],
-                       (double)p.b.pos[2] + t.depth * t.n[2]);
+            shape_shift(&moved, t.depth, t.n);
             s = truth_depth(&p.a, &moved);
             if (!(fabs(s.depth) <= eps))
                 fail("not touching after the move", &p.a, &moved, s.depth, 0, 0);
             /* along a random direction: touching after that move too */
             rng_unit_vector(&d, u);
             t = truth_along(&p.a, &p.b, u);
-            shape_move(&moved, (double)p.b.pos[0] + t.depth * u[0], (double)p.b.pos[1] + t.depth * u[1],
-                       (double)p.b.pos[2] + t.depth * u[2]);
+            moved = p.b;
+            shape_shift(&moved, t.depth, u);
             s = truth_depth(&p.a, &moved);
             if (!(fabs(s.depth) <= eps + (t.depth - t.lower)))
                 fail("along: not touching after the move", &p.a, &moved, s.depth, 0, 0);
@@ -72,7 +71,7 @@ static void methods_agree(int pairs)
 int main(int argc, char **argv)
 {
     int step = argc > 2 ? atoi(argv[2]) : 1, i, k;
-    methods_agree(argc > 1 ? atoi(argv[1]) : 1000);
+    compare_methods(argc > 1 ? atoi(argv[1]) : 1000);
     for (k = 3; k < argc; k++) {
         pair_set_t set;
         double worst = 0, widest = 0;
