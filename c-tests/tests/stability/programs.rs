@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The C programs of this folder: how each is built.
+//! Builds the C programs of this folder.
 
 use crate::harness::{Executable, Precision, Program};
 
-/// A program of this directory that holds this library alone.
+fn source(name: &str) -> Program {
+    Program::c(name).flag("-pedantic").flag("-Werror").source(format!("tests/stability/{name}.c"))
+}
+
+/// Builds a program with this library alone. (`wide` needs 128-bit numbers, which other processors
+/// than x86 lack or have by another name.)
 pub fn alone(name: &str) -> Executable {
     source(name).flag("-DOURS_ALONE").link_ours_static().build()
 }
 
-/// A program of this directory that holds this library, and in double precision
-/// system libccd beside it.
+/// Builds a program with this library, and in double precision system libccd beside it.
 pub fn program(name: &str) -> Executable {
     match Precision::CURRENT {
         Precision::Double => source(name).link_ours_renamed_and_system().build(),
@@ -19,37 +23,20 @@ pub fn program(name: &str) -> Executable {
     }
 }
 
-fn source(name: &str) -> Program {
-    strict(name).source(format!("tests/stability/{name}.c"))
-}
-
-fn strict(name: &str) -> Program {
-    Program::c(name).flag("-pedantic").flag("-Werror")
-}
-
-/// Every pair set under c-tests/bench/pairs.
-#[cfg(not(feature = "single"))]
-pub fn pair_sets() -> Vec<String> {
-    let dir = crate::harness::root().join("c-tests/bench/pairs");
-    let mut sets: Vec<String> = std::fs::read_dir(&dir)
-        .unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
-        .map(|entry| entry.expect("a directory entry").path())
-        .filter(|path| path.extension().is_some_and(|e| e == "bin"))
-        .map(|path| path.display().to_string())
-        .collect();
-    sets.sort();
-    assert!(!sets.is_empty());
-    sets
-}
-
-/// The judge in 128 bits. Other processors than x86 have no such numbers, or by another name.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub fn wide() -> Executable {
-    strict("wide").source("tests/stability/wide/wide.c").flag("-DOURS_ALONE").link_ours_static().build()
-}
-
-/// The same answers in all runs and builds.
+/// Builds the program that prints the same bits in all runs and builds.
 pub fn determinism() -> Executable {
-    let program = source("determinism").flag("-DOURS_ALONE");
-    program.link_ours_shared().build().quiet()
+    source("determinism").flag("-DOURS_ALONE").link_ours_shared().build().quiet()
+}
+
+/// The arguments of `truth`, and every pair set under c-tests/bench/pairs.
+#[cfg(not(feature = "single"))]
+pub fn truth_arguments(pairs: &str, step: &str) -> Vec<String> {
+    let dir = crate::harness::root().join("c-tests/bench/pairs");
+    let entries = std::fs::read_dir(&dir).unwrap_or_else(|e| panic!("{}: {e}", dir.display()));
+    let files = entries.map(|entry| entry.expect("a directory entry").path());
+    let sets = files.filter(|path| path.extension().is_some_and(|e| e == "bin"));
+    let mut sets: Vec<String> = sets.map(|path| path.display().to_string()).collect();
+    assert!(!sets.is_empty());
+    sets.sort();
+    [vec![pairs.to_owned(), step.to_owned()], sets].concat()
 }

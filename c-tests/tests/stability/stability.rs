@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Where penetration methods fail: configurations, categories of pairs, continuity,
-//! termination, memory, determinism. The work is done by C programs, as the
-//! library's users write them; here they are built and run. Longer runs of the same
-//! programs are `campaigns.rs`.
+//! termination, memory, determinism. The tests build and run C programs, as the library's
+//! users write them; `campaigns.rs` runs the same programs for longer.
 
 #[path = "../../harness/mod.rs"]
 mod harness;
@@ -12,41 +11,34 @@ mod harness;
 mod programs;
 
 use harness::Precision;
-#[cfg(not(feature = "single"))]
+#[cfg(any(not(feature = "single"), target_arch = "x86", target_arch = "x86_64"))]
 use programs::alone;
-#[cfg(not(feature = "single"))]
-use programs::pair_sets;
 use programs::program;
 
-/// The judge itself.
 #[test]
 #[cfg(not(feature = "single"))]
 fn truth_agrees_with_itself_and_the_certified_sets() {
-    let mut args = vec!["2000".to_owned(), "25".to_owned()];
-    args.extend(pair_sets());
-    alone("truth").run(args);
+    alone("truth").run(programs::truth_arguments("2000", "25"));
 }
 
-/// T01 to T24 and the cases of other projects, on libccd's entry points, cold and warm.
+/// T01 to U15 and the cases of other projects, on libccd's entry points, cold and warm.
 #[test]
 fn configurations() {
     program("configurations").run(["compatible"]);
 }
 
-/// The same on the extension's own.
 #[test]
 fn configurations_of_the_extension() {
     program("configurations").run(["proven"]);
 }
 
-/// The same on the local query.
 #[test]
 fn configurations_of_the_local_query() {
     program("configurations").run(["local"]);
 }
 
-/// What a query may cost in support points and stack. A broken promise that is repaired fails this
-/// too: take its mark out of the table at the program's end.
+/// Support points and stack of queries. A broken guarantee that is repaired fails this too:
+/// take its mark out of the table at the program's end.
 #[test]
 fn known_costs() {
     let costs = program("costs");
@@ -56,7 +48,7 @@ fn known_costs() {
     };
 }
 
-/// The table of costs at worst, of few queries: no call of this library takes a thousand callbacks.
+/// No call of this library takes a thousand callbacks: the table of few queries.
 #[test]
 fn worst_case() {
     let table = program("worst_case").run(["2000"]).stdout;
@@ -66,33 +58,31 @@ fn worst_case() {
     assert!(most.len() == 7 && most.iter().all(|n| (1..1000).contains(n)), "{table}");
 }
 
-/// A sample of every category of pairs, both tie rules.
-fn sample(pairs: &str, group: &str) {
+/// Judges a sample of every category of pairs, both tie rules.
+fn judge_sample(pairs: &str, group: &str) {
     program("campaign").run([pairs, "-1", group]);
 }
 
-/// On libccd's entry points, cold and warm.
 #[test]
 fn categories() {
-    sample("300", "compatible");
+    judge_sample("300", "compatible");
 }
 
 #[test]
 fn categories_of_the_extension() {
-    sample("100", "proven");
+    judge_sample("100", "proven");
 }
 
 #[test]
 fn categories_of_the_local_query() {
-    sample("100", "local");
+    judge_sample("100", "local");
 }
 
-/// Every call on bodies that are hard for one method or another, judged in 128 bits: a
-/// sample of every row. Other processors than x86 have no such numbers, or by another name.
+/// A sample of every row of bodies that are hard for one method or another.
 #[test]
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 fn judged_in_128_bits() {
-    programs::wide().run([harness::rounds(60)]);
+    alone("wide").run([harness::rounds(60)]);
 }
 
 /// Sliding, rolling, rocking: directions, depths and contact positions.

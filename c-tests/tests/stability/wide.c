@@ -11,9 +11,9 @@
  * exits with 1 where there is one. */
 
 #define __STDC_WANT_IEC_60559_TYPES_EXT__ 1 /* powf128 */
-#include "tests/stability/judge.h"
+#include "judge.h"
 
-#include "rows.h"
+#include "wide/rows.h"
 
 /* --- answers ------------------------------------------------------------------------ */
 
