@@ -1,67 +1,68 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The center of pressure: the one point that represents all of a contact.
+//! The center of pressure: the centroid of the overlap volume, projected along the contact normal.
 //!
-//! *Definition.* Let n be the contact normal, r a point of the plane across n, and δ(r) the local depth: the
-//! length of the chord that the overlap of the objects has along n at r. The center of pressure
+//! *Definition.* Let n be the contact normal, r a point of the plane perpendicular to n, and δ(r) the local
+//! depth: the length of the segment that the line through r along n has in common with both objects. The center
+//! of pressure is
 //!
 //! ```text
-//! c = ∫ δ(r) r dA / ∫ δ(r) dA
+//! c = ∫ δ(r) r dA / ∫ δ(r) dA.
 //! ```
 //!
-//! is the centroid of the overlap, but for its height. It is continuous in the pose, where a deepest point
-//! jumps from corner to corner. A force at c along n has the sum and the moment of a pressure
-//! proportional to δ.
+//! It is continuous in the pose, unlike a deepest point, which jumps from corner to corner. A force at c along n
+//! has the sum and the moment of a pressure proportional to δ. No stiffness of the objects is modelled.
 //!
-//! *Local depth.* The depth d is the distance of the two support planes. An object is lower than its plane
-//! by a convex function low(r), so that δ = d − low1 − low2. At the deepest point r* both are 0: along each
-//! ray from there δ falls from d, and falls faster farther on.
+//! *Local depth.* The depth d is the distance of the two support planes. Let drop(r) be the distance of an
+//! object's surface below its support plane, a convex function; then δ = d − drop1 − drop2. Both drops are 0 at
+//! the deepest point r*, and δ is concave along each ray from there.
 //!
 //! *Steps.*
-//! 1. Find the feature of the object that reaches less far ([`crate::contact::feature`]); where it is a point
-//!    or symmetric, c = r*.
-//! 2. Where known vertices of the other object in its support plane contain it, that object is a plane.
+//! 1. Find the feature of the object of smaller extent ([`crate::contact::feature`]). If it is a point or
+//!    symmetric about r*, c = r*.
+//! 2. If known vertices of the other object in its support plane contain that feature, the other object is a
+//!    plane.
 //! 3. Else find the feature of the other object too.
 //! 4. Integrate over one fan on a plane, or over two fans, in closed form.
 //!
-//! *Integrals.* In a triangle of a fan low is linear, and so is w, which is 0 at r* and 1 on the side across
-//! from it. In the cone between two consecutive rays through vertices of either fan, w1, w2 and low1 + low2
-//! (in units of d) are linear, and the overlap is where all three are at most 1. Its outline there is the upper
-//! envelope of the three: one to three sides. With δ in units of d, a triangle from r* to a side v_i v_j of
-//! the outline, of twice the area a, and the flank beyond that side, which falls off with the slope s
-//! (k = L d / 2 s for the length L), have
+//! *Integrals.* In a triangle of a fan the drop is linear, and so is w, which is 0 at r* and 1 on the side
+//! opposite to it. Between two consecutive rays from r* through vertices of either fan, w1, w2 and drop1 + drop2
+//! (in units of d) are linear, and the overlap is where all three are at most 1. So its outline between the rays
+//! consists of one to three sides. Outside each side the surface is not known; it is assumed to be a plane of
+//! slope s, the *flank*. With δ in units of d, a triangle from r* to a side v_i v_j of the outline, of twice the
+//! area a and the length L of the side, together with its flank (k = L d / 2 s), has
 //!
 //! ```text
 //! ∫ δ dA = a (1 + δ_i + δ_j) / 6 + k (δ_i² + δ_i δ_j + δ_j²) / 3
 //! ∫ δ r dA = v_i (a (1 + 2 δ_i + δ_j) + k' (3 δ_i² + 2 δ_i δ_j + δ_j²)) / 24 + the same for j,  k' = 2 k.
 //! ```
 //!
-//! The flank is all that edges and corners have; which slope it is cancels out there. So faces, edges, corners
-//! and what is between them are one case.
+//! For edges and corners the triangles vanish and only the flanks remain; then s cancels out. So faces, edges and
+//! corners are one case, without a change of formula between them.
 //!
-//! *Range.* The linear model errs by 1 to 2 % of the smaller object's reach (rms) where the depth is 1 % of
-//! that, 2 to 3 % at 3 %, 6 % at 10 %, 14 to 18 % at 30 %; the middle of the witness points, which moves from
-//! corner to corner, by 4 to 10, 7 to 17, 15 to 28 and 25 to 41 % (`c-tests/tests/extension/pressure.c`, `range`).
-//! So no answer is blended to that middle, however deep.
+//! *Accuracy.* The root mean square error of the linear model is 1 to 2 % of the smaller object's extent if the
+//! depth is 1 % of it, 2 to 3 % at 3 %, 6 % at 10 %, and 14 to 18 % at 30 %. For comparison, the middle of the
+//! witness points: 4 to 10, 7 to 17, 15 to 28 and 25 to 41 % (`c-tests/tests/extension/pressure.c`, `range`).
 
 use crate::contact::Penetration;
 use crate::contact::feature::{Fan, FeatureQuery, MAX_KNOWN, area2};
 use crate::contact::frame::ContactFrame;
-use crate::contact::polygon::{Vec2, way};
+use crate::contact::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
 
-/// The slope of flanks that nothing is known of. Insensitive: 2 to 8 tried.
+/// The assumed slope of flanks. Insensitive: 2 to 8 tried.
 const FLANK_SLOPE: f64 = 4.0;
-/// Largest distance below the support plane of a vertex that counts as in it, in depths. The plane then
-/// turns so little that c moves by a third of this share of the half width. Insensitive: 0.01 to 0.05 tried.
-const LEVEL_TOL: f64 = 0.01;
-/// Sides of the outline shorter than this many margins are skipped.
-const MIN_SIDE: f64 = 6.0;
-/// Returns the center of pressure of a hit, half-way between the support planes. `set`: the vertices that
-/// the search has found.
+/// Largest drop, in depths, of a vertex that counts as in the support plane. It tilts the plane so little that c
+/// moves by a third of this fraction of the half width. Insensitive: 0.01 to 0.05 tried.
+const IN_PLANE_DROP_TOL: f64 = 0.01;
+/// Least length of a side of the outline, in vertex offsets; shorter ones are skipped.
+const MIN_SIDE_OFFSETS: f64 = 6.0;
+
+/// Returns the center of pressure of a hit, midway between the support planes. `set`: the known vertices of the
+/// search.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -78,19 +79,19 @@ pub fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
     let centers = centers.map(|c| [c.v1, c.v2]);
     let mut known = [[[0.0; 2]; 3]; MAX_KNOWN];
     let query = FeatureQuery::new(md, set, &mut known, frame, centers, [hit.depth, depth]);
-    let mut sum = PressureSum::new(depth, query.margin);
+    let mut sum = PressureSum::new(depth, query.vertex_offset);
     let is_patch = integrate(&query, &mut sum)?;
     let center = sum.center();
-    // Negated for NaN: where nothing is shared.
+    // Negated for NaN: an empty overlap.
     if !(is_patch && center.norm_squared() < f64::MAX) {
         return Ok(hit.middle());
     }
-    let side = if query.smaller == 0 { 1.0 } else { -1.0 };
-    Ok(query.frame.point(center * side))
+    let sign = if query.smaller == 0 { 1.0 } else { -1.0 };
+    Ok(query.frame.point(center * sign))
 }
 
-/// Integrates the pressure of a contact, in the frame of the object that reaches less far. Returns false
-/// where the deepest point is the center of pressure.
+/// Integrates the local depth of a contact, in the (mirrored, for obj2) frame of the object of smaller extent.
+/// Returns false if the deepest point is the center of pressure.
 #[inline(always)]
 fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     query: &FeatureQuery<A, B, N>,
@@ -98,19 +99,19 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<bool, Fault> {
     let (smaller, other) = (query.smaller, 1 - query.smaller % 2);
     let mut fan = Fan::EMPTY;
-    if !query.fan(smaller, query.towards_center(smaller), &mut fan)? {
+    if !query.build_fan(smaller, query.towards_center(smaller), &mut fan)? {
         return Ok(false);
     }
-    let mut ends = fan.vertices;
-    for end in ends.iter_mut().take(fan.len + 1) {
-        *end = outline_end(end.xy(), larger(end.z, 1.0), end.z);
+    let mut outline = fan.vertices;
+    for end in outline.iter_mut().take(fan.len + 1) {
+        *end = outline_at(end.xy(), larger(end.z, 1.0), end.z);
     }
-    if is_plane(query, other, ends.get(..fan.len).unwrap_or(&[])) {
-        sum.add_fan_on_plane(&fan, &ends);
+    if is_plane(query, other, outline.get(..fan.len).unwrap_or(&[])) {
+        sum.add_fan_on_plane(&fan, &outline);
         return Ok(true);
     }
     let mut fan2 = Fan::EMPTY;
-    if !query.fan(other, ends[0].xy(), &mut fan2)? {
+    if !query.build_fan(other, outline[0].xy(), &mut fan2)? {
         return Ok(false);
     }
     fan2.mirror();
@@ -118,20 +119,20 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(true)
 }
 
-/// Returns whether known vertices of an object in its support plane contain the outline of the other one.
-/// Four of them are looked at: those farthest along the axes and against them.
+/// Returns whether known vertices of an object in its support plane contain the outline of the other object. Uses
+/// four of them: the farthest along each axis and its opposite.
 #[inline(always)]
 fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
     query: &FeatureQuery<A, B, N>,
     object: usize,
     outline: &[Vec3],
 ) -> bool {
-    let mut level = query.known(object).filter(|v| v.z <= LEVEL_TOL);
-    let Some(first) = level.next() else {
+    let mut in_plane = query.known(object).filter(|v| v.z <= IN_PLANE_DROP_TOL);
+    let Some(first) = in_plane.next() else {
         return false;
     };
     let mut face = [first; 4];
-    for v in level {
+    for v in in_plane {
         let [a, b, c, d] = &face;
         let is_farther = [v.x > a.x, v.y > b.y, v.x < c.x, v.y < d.y];
         for (vertex, is_farther) in face.iter_mut().zip(is_farther) {
@@ -140,73 +141,73 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
             }
         }
     }
-    let margin = 2.0 * query.margin;
+    let slack = 2.0 * query.vertex_offset;
     let [a, b, c, d] = &face;
     let (x, y, u, w) = (c.x - a.x, c.y - a.y, d.x - b.x, d.y - b.y);
-    // Everything is beside a line. Negated for NaN.
-    if !(x * w - y * u > margin * (x.abs() + y.abs() + u.abs() + w.abs())) {
+    // A quadrilateral without area contains nothing. Negated for NaN.
+    if !(x * w - y * u > slack * (x.abs() + y.abs() + u.abs() + w.abs())) {
         return false;
     }
     (0..4).all(|i| {
         let (p, q) = (&face[i % 4], &face[(i + 1) % 4]);
         let (x, y) = (q.x - p.x, q.y - p.y);
-        let least = x * p.y - y * p.x - margin * (x.abs() + y.abs());
+        let least = x * p.y - y * p.x - slack * (x.abs() + y.abs());
         // The other object's outline is mirrored.
         outline.iter().all(|o| y * o.x - x * o.y >= least)
     })
 }
 
-/// Returns where the outline of the overlap is on the ray through a place at which the largest bound is `top` and the
-/// sum of the lows `low`; z: the local depth there, in depths.
+/// Returns the point of the outline on the ray through `at`; z: the local depth there, in depths. `bound`: the
+/// largest bound at `at`. `drop`: the sum of the drops there.
 #[inline(always)]
-fn outline_end(at: Vec2, top: f64, low: f64) -> Vec3 {
-    let share = 1.0 / top;
-    Vec3::new(at.x * share, at.y * share, larger(1.0 - low * share, 0.0))
+fn outline_at(at: Vec2, bound: f64, drop: f64) -> Vec3 {
+    let scale = 1.0 / bound;
+    Vec3::new(at.x * scale, at.y * scale, larger(1.0 - drop * scale, 0.0))
 }
 
-/// A ray from the deepest point through a vertex of a fan, and what is at most 1 in the overlap at that
-/// vertex: w of both fans, and the sum of the lows.
+/// A ray from the deepest point through a vertex of a fan.
 #[derive(Clone, Copy)]
-struct Ray {
+struct FanRay {
     at: Vec2,
+    /// The quantities that are at most 1 in the overlap, at the vertex: w of both fans, and the sum of the drops.
     bounds: [f64; 3],
     /// The index of the largest bound.
-    top: usize,
+    active_bound: usize,
     /// The point of the ray at which the largest bound is 1.
     end: Vec3,
 }
 
-impl Ray {
-    /// Returns the ray through vertex `v` of fan `own`, which is between the vertices `p` and `q` of the other
-    /// fan; `pv`, `vq` and `pq`: their cross products.
+impl FanRay {
+    /// Returns the ray through vertex `v` of fan `own`, which passes between the vertices `p` and `q` of the other
+    /// fan. `pv`, `vq` and `pq`: the cross products of these vertices.
     #[inline(always)]
     fn new(v: &Vec3, own: usize, [p, q]: [&Vec3; 2], [pv, vq, pq]: [f64; 3]) -> Self {
-        let share = 1.0 / pq;
-        let (one, two) = (vq * share, pv * share);
-        let low = v.z + one * p.z + two * q.z;
-        let mut bounds = [one + two, one + two, low];
+        let scale = 1.0 / pq;
+        let (weight_p, weight_q) = (vq * scale, pv * scale);
+        let drop = v.z + weight_p * p.z + weight_q * q.z;
+        let mut bounds = [weight_p + weight_q, weight_p + weight_q, drop];
         bounds[own % 2] = 1.0;
         let k = usize::from(bounds[1] > bounds[0]);
-        let top = if low > bounds[k] { 2 } else { k };
+        let active_bound = if drop > bounds[k] { 2 } else { k };
         Self {
             at: v.xy(),
             bounds,
-            top,
-            end: outline_end(v.xy(), bounds[top], low),
+            active_bound,
+            end: outline_at(v.xy(), bounds[active_bound], drop),
         }
     }
 
-    /// Returns where the outline passes from bound `i`, the larger one on this ray, to bound `j`, the larger one
-    /// on `next`; and by how much the third one is larger there.
+    /// Returns the outline point between this ray and `next` at which the bounds `i` and `j`, active on the one and on
+    /// the other, are equal; and the excess of the third bound there.
     #[inline(always)]
-    fn crossing(&self, next: &Self, i: usize, j: usize) -> (Vec3, f64) {
+    fn outline_crossing(&self, next: &Self, i: usize, j: usize) -> (Vec3, f64) {
         let k = 3_usize.wrapping_sub(i + j).min(2);
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
         let t = (a[i] - a[j]) / ((a[i] - a[j]) - (b[i] - b[j]));
         let bounds = [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t);
         let at = self.at + (next.at - self.at) * t;
-        (outline_end(at, bounds[i], bounds[2]), bounds[k] - bounds[i])
+        (outline_at(at, bounds[i], bounds[2]), bounds[k] - bounds[i])
     }
 }
 
@@ -214,32 +215,32 @@ impl Ray {
 struct PressureSum {
     volume: f64,
     moment: Vec2,
-    /// d / s.
-    flank: f64,
+    /// Width of a flank at the local depth d: d / s, metres.
+    flank_width: f64,
     min_side2: f64,
 }
 
 impl PressureSum {
-    fn new(depth: f64, margin: f64) -> Self {
+    fn new(depth: f64, vertex_offset: f64) -> Self {
         Self {
             volume: 0.0,
             moment: Vec2::zeros(),
-            flank: depth / FLANK_SLOPE,
-            min_side2: MIN_SIDE * MIN_SIDE * margin * margin,
+            flank_width: depth / FLANK_SLOPE,
+            min_side2: MIN_SIDE_OFFSETS * MIN_SIDE_OFFSETS * vertex_offset * vertex_offset,
         }
     }
 
-    /// Adds the triangle from the deepest point to a side of the outline, and the flank beyond that.
+    /// Adds the triangle from the deepest point to a side of the outline, and its flank.
     #[inline(always)]
     fn add(&mut self, v: &Vec3, w: &Vec3) {
-        let length2 = way(v, w).norm_squared();
+        let length2 = offset(v, w).norm_squared();
         if length2 < self.min_side2 {
             return;
         }
         let length = length2.sqrt();
         let (a, b) = (v.z, w.z);
         let area = area2(v, w);
-        let k = self.flank * length;
+        let k = self.flank_width * length;
         let both = area + (area + k * (a + b)) * (a + b);
         let one = both + (area + 2.0 * k * a) * a;
         let two = both + (area + 2.0 * k * b) * b;
@@ -247,41 +248,41 @@ impl PressureSum {
         self.moment += v.xy() * one + w.xy() * two;
     }
 
-    /// Adds a fan on a plane that reaches farther; `ends`: the outline towards its vertices.
+    /// Adds a fan on a larger plane. `outline`: the outline points towards its vertices.
     #[inline(always)]
-    fn add_fan_on_plane<const M: usize>(&mut self, fan: &Fan, ends: &[Vec3; M]) {
+    fn add_fan_on_plane<const M: usize>(&mut self, fan: &Fan, outline: &[Vec3; M]) {
         for i in 0..fan.len.min(M - 1) {
             let (p, q) = (&fan.vertices[i], &fan.vertices[i + 1]);
             if !(fan.areas[i] > 0.0) {
                 continue;
             }
-            let mut start = ends[i];
+            let mut start = outline[i];
             if (p.z > 1.0) != (q.z > 1.0) {
                 let t = (1.0 - p.z) / (q.z - p.z);
                 let middle = Vec3::new(p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, 0.0);
                 self.add(&start, &middle);
                 start = middle;
             }
-            self.add(&start, &ends[i + 1]);
+            self.add(&start, &outline[i + 1]);
         }
     }
 
-    /// Adds what two fans share, once around, from vertex to vertex of either. The deepest point is within
+    /// Adds the overlap of two fans, once around, from vertex to vertex of either. The deepest point must be inside
     /// both.
     #[inline(always)]
     fn add_fans(&mut self, one: &Fan, two: &Fan) {
         let fans = [one, two];
         let vertex = |f: usize, i: usize| &fans[f % 2].vertices[i.min(Fan::CAPACITY - 1)];
         let area = |f: usize, i: usize| fans[f % 2].areas[i.min(Fan::CAPACITY - 1)];
-        // The triangles that the last ray is in.
+        // The triangles of both fans that contain the last ray.
         let p = vertex(0, 0);
-        let is_here =
+        let contains_ray =
             |i: &usize| area2(vertex(1, *i), p) >= 0.0 && area2(p, vertex(1, *i + 1)) > 0.0;
         let last = two.len.saturating_sub(1);
-        let mut at = [0, (0..last).find(is_here).unwrap_or(last)];
+        let mut at = [0, (0..last).find(contains_ray).unwrap_or(last)];
         let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
         let crosses = [area2(q, p), area2(p, r), area(1, at[1])];
-        let mut last = Ray::new(p, 0, [q, r], crosses);
+        let mut last = FanRay::new(p, 0, [q, r], crosses);
         for _ in 0..one.len + two.len {
             let nexts = [vertex(0, at[0] + 1), vertex(1, at[1] + 1)];
             let turn = area2(nexts[0], nexts[1]);
@@ -291,7 +292,7 @@ impl PressureSum {
             let v = nexts[own];
             let p = vertex(other, at[other]);
             let crosses = [area2(p, v), turn.abs(), area(other, at[other])];
-            let next = Ray::new(v, own, [p, nexts[other]], crosses);
+            let next = FanRay::new(v, own, [p, nexts[other]], crosses);
             self.add_cone(&last, &next);
             last = next;
             let next = at[own] + 1;
@@ -299,19 +300,19 @@ impl PressureSum {
         }
     }
 
-    /// Adds the outline between two consecutive rays.
+    /// Adds the overlap between two consecutive rays.
     #[inline(always)]
-    fn add_cone(&mut self, last: &Ray, next: &Ray) {
-        let (i, j) = (last.top, next.top);
+    fn add_cone(&mut self, last: &FanRay, next: &FanRay) {
+        let (i, j) = (last.active_bound, next.active_bound);
         let mut start = last.end;
         if i != j {
             let k = 3_usize.wrapping_sub(i + j).min(2);
-            let (mut middle, excess) = last.crossing(next, i, j);
+            let (mut middle, excess) = last.outline_crossing(next, i, j);
             if excess > 0.0 {
-                let (first, _) = last.crossing(next, i, k);
+                let (first, _) = last.outline_crossing(next, i, k);
                 self.add(&start, &first);
                 start = first;
-                (middle, _) = last.crossing(next, k, j);
+                (middle, _) = last.outline_crossing(next, k, j);
             }
             self.add(&start, &middle);
             start = middle;
@@ -319,7 +320,7 @@ impl PressureSum {
         self.add(&start, &next.end);
     }
 
-    /// Returns the center of pressure, from the deepest point; NaN where nothing is shared.
+    /// Returns the center of pressure, relative to the deepest point; NaN if the overlap is empty.
     fn center(&self) -> Vec2 {
         self.moment / self.volume
     }
@@ -331,16 +332,17 @@ mod tests {
     use crate::shapes::{Random, ball, corners, difference, hull, placed};
     use nalgebra::{Rotation3, Vector3};
 
+    /// Makes a fan of vertices (x, y, drop).
     fn fan(corners: &[(f64, f64, f64)]) -> Fan {
         let mut fan = Fan::EMPTY;
-        for &(x, y, low) in corners {
-            fan.push(Vec3::new(x, y, low));
+        for &(x, y, drop) in corners {
+            fan.push(Vec3::new(x, y, drop));
         }
-        assert!(fan.close());
+        assert!(fan.compute_areas());
         fan
     }
 
-    /// Returns w and low of a fan at a place.
+    /// Returns w and the drop of a fan at a point.
     fn bounds(fan: &Fan, r: &Vec3) -> [f64; 2] {
         let mut found = (0..fan.len).filter_map(|i| {
             let (p, q) = (&fan.vertices[i], &fan.vertices[i + 1]);
@@ -350,15 +352,15 @@ mod tests {
         found.next().unwrap_or([9.0; 2])
     }
 
-    /// Returns the centroid of what the fans share, by sums over a grid.
+    /// Returns the center of pressure of two fans, by sums over a grid.
     fn center_by_grid(fans: &[Fan; 2]) -> [f64; 2] {
         const N: i32 = 400;
         let mut sum = [0.0; 3];
         for (x, y) in (-N..N).flat_map(|x| (-N..N).map(move |y| (x, y))) {
             let [x, y] = [x, y].map(|x| (x as f64 + 0.5) * 1.5 / N as f64);
             let r = Vec3::new(x, y, 0.0);
-            let [[w1, low1], [w2, low2]] = [0, 1].map(|i| bounds(&fans[i], &r));
-            let depth = 1.0 - low1 - low2;
+            let [[w1, drop1], [w2, drop2]] = [0, 1].map(|i| bounds(&fans[i], &r));
+            let depth = 1.0 - drop1 - drop2;
             if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {
                 sum = [sum[0] + depth, sum[1] + depth * x, sum[2] + depth * y];
             }
@@ -367,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn two_fans_have_the_center_of_a_grid() {
+    fn center_of_two_fans_is_that_of_a_grid() {
         let mut r = Random::new(1);
         for round in 0..40 {
             let fans = [0, 1].map(|_| {
@@ -389,8 +391,8 @@ mod tests {
         }
     }
 
-    /// Returns the center of pressure of obj1 on the plane that obj2 has along −z, so deep, from vertices that
-    /// `dirs` find; and the calls.
+    /// Returns the center of pressure of a body on a floor, at this depth, with the vertices that `dirs` return as
+    /// known ones; and the number of support points.
     fn position(points: &[Vec3], depth: f64, dirs: &[Vec3]) -> (Vec3, u64) {
         let lowest = points.iter().fold(f64::INFINITY, |z, p| z.min(p.z));
         let body = placed(
@@ -429,14 +431,15 @@ mod tests {
         (pos, md.supports() - before)
     }
 
+    /// Returns the corners of a box rotated by this angle about y.
     fn leaning(half: Vec3, degrees: f64) -> Vec<Vec3> {
         let axis = Vector3::y_axis();
         let rotation = Rotation3::from_axis_angle(&axis, degrees.to_radians());
         placed(&corners(half), &rotation, Vec3::zeros())
     }
 
-    /// A box that leans by less than its depth over its width: the centroid of the wedge. No query is needed
-    /// where known directions cover the tilts.
+    /// Tests a box that leans by less than its depth over its width: the position is the centroid of the wedge, and
+    /// no query is made if known directions cover the tilts.
     #[test]
     fn known_vertices_replace_queries() {
         let half = Vec3::new(0.125, 0.125, 0.1);
@@ -455,9 +458,9 @@ mod tests {
         assert_eq!((calls > 0, aided_calls), (true, 0));
     }
 
-    /// The position is continuous in the depth, of a box and of a plate that is pressed by many thicknesses.
+    /// Tests a box, and a plate at depths of many thicknesses.
     #[test]
-    fn the_position_is_continuous_in_the_depth() {
+    fn position_is_continuous_in_the_depth() {
         for half in [Vec3::repeat(0.125), Vec3::new(0.125, 0.1, 0.005)] {
             let body = leaning(half, 1.0);
             let at = |depth| position(&body, depth, &[]).0;
@@ -471,14 +474,14 @@ mod tests {
                 last = next;
             }
         }
-        // A plate that is pressed by a tenth of its thickness keeps its center of pressure.
+        // A plate at a depth of a tenth of its thickness has its center of pressure near its center.
         let plate = leaning(Vec3::new(0.125, 0.125, 0.005), 0.02);
         let (pos, _) = position(&plate, 1e-3, &[]);
         assert!(pos.x.abs() < 3e-3, "{pos:?}");
     }
 
     #[test]
-    fn a_point_that_is_not_finite_is_a_fault() {
+    fn non_finite_point_is_a_fault() {
         let calls = core::cell::Cell::new(0);
         let broken = |n: &Vec3| {
             calls.set(calls.get() + 1);

@@ -1,79 +1,88 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Finds the contact face of one object: its corners are support vertices of directions close to the normal.
+//! Finds the contact face of one object: its corners are support vertices along directions close to the normal.
 //!
-//! No reference is known to us. Steps:
-//! 1. *Face.* The face of an object along the normal n is what lies at most the slop below its support plane.
-//!    The support vertex of n + t, with a small tilt t across n, maximises t·r − low, r its place in the
-//!    contact frame and low its depth below the plane. With |t| = 2 slop / size a corner half the slop low has
-//!    a larger value than all that lies a quarter of the size closer. A vertex more than the slop low is not of
-//!    the face; half the tilt is queried then. The size is how far apart [`WIDE_TILT`] finds vertices.
-//! 2. *All corners.* The direction across the side of two corners, in which both have the same value, finds
-//!    what is beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries; a curved one
-//!    becomes an inscribed polygon, whose gaps are halved in a fixed order, so that it moves with the object.
-//!    Missed, 1 in 100,000: of a face that leans so much that only an edge and a corner beside it are within the
-//!    slop, that corner; every tilt finds the edge or what is lower than the slop.
-//! 3. *Roundness.* A corner that two directions found is sharp. Others are queried with half the tilt: on a
-//!    round surface p = c + R t, and c = 2 p(t/2) − p(t) is the corner. A smooth piece is known by equal gains
-//!    of both points in their directions (trapezoidal rule). A point that moves by more than
-//!    sqrt(slop · size / 2) stays: it would leave a circle as large as the object by the slop.
-//! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. Where what they
-//!    find moved as one body, so did the corners; else the face is found from nothing.
+//! The *drop* of a point is its distance below the support plane of the normal n. The *size* is the largest distance
+//! between the vertices found at the tilt [`WIDE_TILT`].
+//!
+//! 1. *Face.* The face consists of the points with a drop of at most the slop. The support vertex of n + t, with a
+//!    small tilt t perpendicular to n, maximises t·r − drop(r), r being its position in the contact frame. At
+//!    |t| = 2 slop / size, a corner with a drop of half the slop has at least the value of any point a quarter of
+//!    the size closer. If the vertex has a drop greater than the slop, it is not in the face, and half the tilt is
+//!    queried.
+//! 2. *All corners.* For each side of two corners, the outward direction in which both have the same value is
+//!    queried; it finds a corner beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries.
+//!    A curved face becomes an inscribed polygon, whose sides are refined in a fixed order, so that the polygon
+//!    moves with the object.
+//!    Known failure (1 in 100,000): a tilted face of which only an edge and one more corner are within the slop.
+//!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
+//! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are queried with half the tilt: on
+//!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it.
+//!    The surface between two samples is taken for smooth if each vertex exceeds the other by the same amount in
+//!    its own direction, as on a surface with p linear in t. Displacements greater than sqrt(slop · size / 2) are
+//!    not treated as rounding of a corner.
+//! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. If their vertices
+//!    moved as one rigid body, so did the corners; else the face is searched anew.
+//!
+//! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
+//! the whole query; here only the support function is evaluated along tilted normals.
 
 use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
-use crate::contact::polygon::{Polygon, Vec2, way};
+use crate::contact::polygon::{Polygon, Vec2, offset};
 use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
 use crate::minkowski::support::{Fault, SupportMap};
 use core::mem::swap;
 
-/// Queries of one object at most: eight corners, each found twice, and the size.
+/// Limit on the queries of one object: eight corners, each found twice, and the size.
 const MAX_QUERIES: u32 = 24;
-/// Corners of a face at most: one more than eight, so that a face of eight is known to be complete.
+/// Largest number of corners of a face: one more than eight, so that a face of eight is known to be complete.
 pub const MAX_CORNERS: usize = 9;
-/// Tilt of the first directions, a tangent: 14°. With less, round objects seem smaller than the circle that
-/// their points move on; with more, the flanks beside a face are taken for it.
+/// Tilt of the first directions, a tangent: 14°. A smaller one underestimates the size of curved objects; with a
+/// larger one, surfaces adjacent to the face are taken for it.
 const WIDE_TILT: f64 = 0.25;
-/// Points closer than this many slops may be one round corner: those of a ball are 8 apart.
+/// Distance, in slops, below which samples may be of one rounded corner. The samples of a ball are 8 slops apart.
 const ROUND_CORNER_SLOPS: f64 = 16.0;
-/// Lean of a direction across a side towards its second corner, in tilts. A corner beyond the side by less
-/// than this angle may be missed: 0.01 % of the square of the side.
+/// Lean of the outward direction of a side towards its second corner, in tilts. A corner beyond the side by less
+/// than this angle may be missed: 0.01 % of the square of the side in area.
 const SIDE_LEAN: f64 = 1.0 / 4096.0;
-/// The first directions: their tilts, over the tilt.
-pub const THREE_WAYS: [Vec2; 3] = [
+/// The first three tilt directions, unit.
+pub const THREE_DIRECTIONS: [Vec2; 3] = [
     Vec2::new(1.0, 0.0),
     Vec2::new(-0.5, 0.866_025_403_784_438_6),
     Vec2::new(-0.5, -0.866_025_403_784_438_6),
 ];
-/// The least slop, as a share of the depth. Along a normal whose depth is 0.1 % above the minimum the corners of
-/// a face differ in height by that, times the ratio of two distances: that of the corners, and that of the
-/// contact from the closer one. Measured on 17,351 pairs of boxes and of a box and an ellipsoid, 1 cm deep,
-/// slop 0: a share of 0 finds a corner in place of a face or an edge in 212, 0.001 in 21, 0.002 in 12, 0.01 in 1.
+/// Least slop, relative to the depth. Along a normal whose depth is 0.1 % above the minimum the corners of a face
+/// differ in height by that error times the ratio of the corners' distance to the distance of the contact from the
+/// closer corner. Measured on 17,351 pairs of boxes and of a box and an ellipsoid, 1 cm deep, with a requested slop
+/// of 0: a corner is found instead of a face or an edge in 212 pairs with the value 0, in 21 with 0.001, in 12 with
+/// 0.002, in 1 with 0.01.
 const MIN_SLOP_REL: f64 = 0.01;
-/// The least slop, in roundings of a coordinate: the tilt that finds corners must be well above what a callback
-/// rounds its direction by.
+/// Least slop, in rounding errors of a coordinate: the tilt must be well above the rounding error of the
+/// directions in a callback.
 const MIN_SLOP_ROUNDINGS: f64 = 4.0;
 
-/// A support vertex in the contact frame (z: how low), and how it was found.
+/// A support vertex in the contact frame (z: its drop), and its direction.
 #[derive(Clone, Copy, Default)]
 pub struct FaceSample {
     /// The tilt of its direction.
     pub tilt: Vec2,
     /// The vertex.
     pub found: Vec3,
-    /// The corner without roundness, once it is settled.
+    /// The core: the corner without its rounding, if `has_core`; else the vertex.
     pub corner: Vec3,
-    /// Motion of the sample for each tilt, metres.
+    /// Radius of the rounded corner, metres; 0 for a sharp one.
     radius: f64,
-    /// Roundness is removed, or there is none.
-    is_settled: bool,
-    /// No corner is beyond the side to the next sample, or no query is left to find one.
-    is_closed: bool,
+    /// True if the rounding of the corner was removed or the corner is sharp.
+    has_core: bool,
+    /// True if there is no corner beyond the side to the next sample, or no query is left to find one.
+    is_side_complete: bool,
 }
 
 impl FaceSample {
+    /// Makes the sample of a tilted direction and its vertex.
     pub fn new(tilt: Vec2, found: Vec3) -> Self {
         Self {
             tilt,
@@ -83,9 +92,9 @@ impl FaceSample {
         }
     }
 
-    /// Returns by how much its vertex has a larger value in its own direction than another one.
+    /// Returns by how much the vertex exceeds another one in its own direction.
     fn gain_over(&self, other: &Self) -> f64 {
-        self.tilt.dot(&way(&other.found, &self.found)) + other.found.z - self.found.z
+        self.tilt.dot(&offset(&other.found, &self.found)) + other.found.z - self.found.z
     }
 }
 
@@ -93,26 +102,27 @@ impl FaceSample {
 #[derive(Clone, Copy, Default)]
 pub struct Face {
     pub corners: Polygon<MAX_CORNERS>,
-    /// The height of its support plane, outwards.
-    pub top: f64,
-    /// The slop in force.
+    /// Height of the support plane along the outward normal, metres.
+    pub support_height: f64,
+    /// The effective slop, metres.
     pub slop: f64,
-    /// The rounding of a coordinate, metres.
-    pub rounding: f64,
-    /// Distance beside the corners at which the surface is the slop low; of a segment at the less round end.
-    pub round: f64,
+    /// The rounding error of a coordinate, metres.
+    pub coord_eps: f64,
+    /// Distance from the corners at which their rounded surface has a drop of the slop, sqrt(2 R slop), metres, for
+    /// the smallest radius R.
+    pub rounded_halfwidth: f64,
     /// The samples that found the corners, in their order.
     pub samples: FixedVec<FaceSample, MAX_CORNERS>,
-    /// The tilt that finds corners.
-    pub tilt_size: f64,
-    /// All corners are known, and all are sharp.
+    /// The tilt that finds corners, a tangent.
+    pub tilt_tan: f64,
+    /// True if all corners are known and sharp.
     pub is_complete: bool,
-    /// Motion since the last query, where the face was cached.
+    /// Motion since the last query, if the face is the cached one.
     pub motion: Option<Motion>,
 }
 
-/// Finds both faces, cached or from nothing. Returns them with the slop in force: the caller's, or the least one
-/// of the depth.
+/// Finds both faces, cached or anew. Returns them with the effective slop: the larger of the caller's and the least
+/// slop for the depth.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -125,44 +135,49 @@ pub fn faces<A: SupportMap, B: SupportMap>(
 ) -> Result<([Face; 2], f64), Fault> {
     let mut one = FaceSearch::new(obj1, frame, 1.0);
     let mut two = FaceSearch::new(obj2, frame, -1.0);
-    one.find_cached_or_plane(cache.map(|cache| &cache.faces[0]))?;
-    two.find_cached_or_plane(cache.map(|cache| &cache.faces[1]))?;
-    let slop = larger(slop, MIN_SLOP_REL * (one.face.top + two.face.top));
+    one.query_cached_or_plane(cache.map(|cache| &cache.faces[0]))?;
+    two.query_cached_or_plane(cache.map(|cache| &cache.faces[1]))?;
+    let depth = one.face.support_height + two.face.support_height;
+    let slop = larger(slop, MIN_SLOP_REL * depth);
     let has_slop = cache.is_some_and(|cache| cache.has_slop(slop));
-    one.find(slop, has_slop)?;
-    two.find(slop, has_slop)?;
+    one.find_face(slop, has_slop)?;
+    two.find_face(slop, has_slop)?;
     Ok(([one.face, two.face], slop))
 }
 
 impl Face {
-    /// Returns how far beside its corners a contact may be: half the slop, and as far as it is round for a line
-    /// that is long for that, because a curved rim is round along it and not across.
-    pub fn reach(&self) -> f64 {
+    /// Returns the distance from the face within which a contact may lie, metres: half the slop; for a segment that
+    /// is long compared with its rounding, at least the rounded half-width. (For a short segment, e.g. a part of a
+    /// curved rim, the rounding is along it and not perpendicular to it.)
+    pub fn contact_halfwidth(&self) -> f64 {
         match &*self.corners {
-            [a, b] if way(a, b).norm() > 2.0 * self.round => larger(self.round, 0.5 * self.slop),
+            [a, b] if offset(a, b).norm() > 2.0 * self.rounded_halfwidth => {
+                larger(self.rounded_halfwidth, 0.5 * self.slop)
+            }
             _ => 0.5 * self.slop,
         }
     }
 }
 
-/// Returns the tilt of the direction across the side from `a` to `b` of a face, outwards, in which both have the
-/// same value, but for a `lean` to `b`.
-pub fn across(a: &Vec3, b: &Vec3, tilt: f64, lean: f64) -> Vec2 {
-    let along = way(a, b);
+/// Returns the tilt of the outward direction of the side from `a` to `b` in which both corners have the same value,
+/// changed by `lean` towards `b`.
+pub fn outward_tilt(a: &Vec3, b: &Vec3, tilt: f64, lean: f64) -> Vec2 {
+    let along = offset(a, b);
     let length = along.norm();
     let lean = ((b.z - a.z) / length).max(-tilt).min(tilt) + lean;
     (Vec2::new(along.y, -along.x) * tilt + along * lean) / length
 }
 
-/// Finds the corners of one face.
+/// State of the search for the corners of one face.
 struct FaceSearch<'a, S> {
     object: &'a S,
     frame: &'a ContactFrame,
+    /// 1 for obj1, -1 for obj2: the outward normal is this times the normal of the frame.
     sign: f64,
     query_count: u32,
     /// The vertex on the support plane.
     first: FaceSample,
-    /// The face, as far as it is found.
+    /// The face, as far as it is known.
     face: Face,
 }
 
@@ -178,18 +193,19 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         }
     }
 
+    /// Evaluates the object along the tilted outward normal.
     fn query(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
         let dir = self.frame.tilted_direction(self.sign, tilt);
         let p = self.object.support(&dir);
         self.query_count += 1;
-        self.face.rounding = larger(self.face.rounding, 8.0 * EPSILON * max_abs(&p));
+        self.face.coord_eps = larger(self.face.coord_eps, 8.0 * EPSILON * max_abs(&p));
         let mut found = self.frame.project(&p)?;
-        found.z = self.face.top - self.sign * found.z;
+        found.z = self.face.support_height - self.sign * found.z;
         Ok(FaceSample::new(tilt, found))
     }
 
-    /// Finds what may be a corner of the face: with the tilt, else with half of it.
-    fn corner(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
+    /// Queries a candidate for a corner: with the tilt and, if that vertex is not in the face, with half of it.
+    fn query_corner(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
         let new = self.query(tilt)?;
         if new.found.z <= self.face.slop {
             return Ok(new);
@@ -197,125 +213,127 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         self.query(tilt * 0.5)
     }
 
-    /// Finds the cached face, or the support plane where it is another.
-    fn find_cached_or_plane(&mut self, cached: Option<&CachedFace>) -> Result<(), Fault> {
+    /// Confirms the cached face or, if it has changed, queries the support plane.
+    fn query_cached_or_plane(&mut self, cached: Option<&CachedFace>) -> Result<(), Fault> {
         if let Some(cached) = cached {
-            self.face.motion = self.find_cached(cached)?;
+            self.face.motion = self.confirm_cached(cached)?;
         }
         if self.face.motion.is_none() {
-            self.find_plane()?;
+            self.query_support_plane()?;
         }
         Ok(())
     }
 
     /// Queries the support plane.
-    fn find_plane(&mut self) -> Result<(), Fault> {
-        self.face.top = 0.0;
+    fn query_support_plane(&mut self) -> Result<(), Fault> {
+        self.face.support_height = 0.0;
         self.first = self.query(Vec2::zeros())?;
-        self.face.top = -self.first.found.z;
+        self.face.support_height = -self.first.found.z;
         (self.first.found.z, self.first.corner.z) = (0.0, 0.0);
         Ok(())
     }
 
-    /// Finds the face from nothing, where it is not the cached one or that had another slop.
-    fn find(&mut self, slop: f64, has_slop: bool) -> Result<(), Fault> {
+    /// Finds the face anew, unless it is the cached one with the same slop; then makes its polygon.
+    fn find_face(&mut self, slop: f64, has_slop: bool) -> Result<(), Fault> {
         if self.face.motion.is_none() || !has_slop {
             if self.face.motion.is_some() {
-                self.find_plane()?;
+                self.query_support_plane()?;
             }
             self.face.samples = FixedVec::default();
             self.query_count = 1;
-            self.start(slop)?;
+            self.find_first_corners(slop)?;
             if self.face.samples.len() > 1 {
-                self.refine()?;
+                self.find_remaining_corners()?;
             }
             for i in 0..self.face.samples.len() {
-                self.remove_roundness(i)?;
+                self.find_core(i)?;
             }
             for i in 0..self.face.samples.len() {
-                if let Some(round) = self.round_corner_at(self.face.samples.at(i)) {
-                    let sample = self.face.samples.at_mut(i);
-                    (sample.corner, sample.radius) = (round.corner, round.radius);
+                if let Some(rounded) = self.rounded_corner_at(self.face.samples.cyclic(i)) {
+                    let sample = self.face.samples.cyclic_mut(i);
+                    (sample.corner, sample.radius) = (rounded.corner, rounded.radius);
                 }
             }
         }
-        self.join_corners();
+        self.build_polygon();
         Ok(())
     }
 
-    /// Finds the size, and the first corners.
-    fn start(&mut self, slop: f64) -> Result<(), Fault> {
+    /// Finds the size and the first corners.
+    fn find_first_corners(&mut self, slop: f64) -> Result<(), Fault> {
         let mut size = 0.0;
         let mut wide = [self.first; 3];
         for i in 0..3 {
-            let new = self.query(THREE_WAYS[i] * WIDE_TILT)?;
+            let new = self.query(THREE_DIRECTIONS[i] * WIDE_TILT)?;
             for known in &wide {
-                size = larger(size, way(&known.found, &new.found).norm());
+                size = larger(size, offset(&known.found, &new.found).norm());
             }
             wide[i] = new;
         }
-        // No coarser than the face, no finer than what rounding does to it.
-        self.face.slop = slop.min(size).max(MIN_SLOP_ROUNDINGS * self.face.rounding);
-        if size > self.face.rounding {
-            self.face.tilt_size = lesser(2.0 * self.face.slop / size, WIDE_TILT);
+        // At most the size of the face, at least some rounding errors.
+        self.face.slop = slop.min(size).max(MIN_SLOP_ROUNDINGS * self.face.coord_eps);
+        if size > self.face.coord_eps {
+            self.face.tilt_tan = lesser(2.0 * self.face.slop / size, WIDE_TILT);
             for mut new in wide {
                 if new.found.z > self.face.slop {
-                    new = self.corner(new.tilt * (self.face.tilt_size / WIDE_TILT))?;
+                    new = self.query_corner(new.tilt * (self.face.tilt_tan / WIDE_TILT))?;
                 }
-                if new.found.z <= self.face.slop && !self.is_found(&new) {
+                if new.found.z <= self.face.slop && !self.mark_if_found(&new) {
                     self.face.samples.push(new);
                 }
             }
         }
         let first = self.first;
-        if !self.is_found(&first) && self.face.samples.len() < 2 {
+        if !self.mark_if_found(&first) && self.face.samples.len() < 2 {
             self.face.samples.push(first);
         }
         if let [a, b, c] = &mut *self.face.samples {
-            if way(&a.found, &b.found).perp(&way(&a.found, &c.found)) < 0.0 {
+            if offset(&a.found, &b.found).perp(&offset(&a.found, &c.found)) < 0.0 {
                 swap(b, c);
             }
         }
         Ok(())
     }
 
+    /// Returns whether the vertices of two samples are the same within rounding.
     fn is_same(&self, a: &FaceSample, b: &FaceSample) -> bool {
-        let apart = a.found - b.found;
-        apart.xy().norm() <= self.face.rounding && apart.z.abs() <= self.face.rounding
+        let difference = (a.found - b.found).abs();
+        difference.xy().norm() <= self.face.coord_eps && difference.z <= self.face.coord_eps
     }
 
-    /// Returns whether two samples may be of one round corner.
+    /// Returns whether two samples may be of one rounded corner.
     fn is_near(&self, a: &FaceSample, b: &FaceSample) -> bool {
-        way(&a.found, &b.found).norm() <= ROUND_CORNER_SLOPS * self.face.slop
+        offset(&a.found, &b.found).norm() <= ROUND_CORNER_SLOPS * self.face.slop
     }
 
-    /// Returns whether a vertex is one of those found; from another direction it is sharp then. Of a round end two
-    /// directions that differ along the line alone find one point: beside another sample it may still be round.
-    fn is_found(&mut self, new: &FaceSample) -> bool {
+    /// Returns whether a vertex was found before. If so, and if the directions differ, marks it as sharp. (If another
+    /// sample is near, it may still be rounded: for a rounded end of a segment two directions that differ only along
+    /// the segment return the same point.)
+    fn mark_if_found(&mut self, new: &FaceSample) -> bool {
         let samples = &self.face.samples;
-        let known = (0..samples.len()).find(|i| self.is_same(samples.at(*i), new));
+        let known = (0..samples.len()).find(|i| self.is_same(samples.cyclic(*i), new));
         if let Some(i) = known {
-            let turned = (samples.at(i).tilt - new.tilt).norm();
+            let tilt_change = (samples.cyclic(i).tilt - new.tilt).norm();
             let near_count = samples.iter().filter(|s| self.is_near(s, new)).count();
-            let is_sharp = near_count == 1 && turned >= 0.25 * self.face.tilt_size;
-            self.face.samples.at_mut(i).is_settled |= is_sharp;
+            let is_sharp = near_count == 1 && tilt_change >= 0.25 * self.face.tilt_tan;
+            self.face.samples.cyclic_mut(i).has_core |= is_sharp;
         }
         known.is_some()
     }
 
-    /// Finds the corners between those found, around the face until every side is closed.
-    fn refine(&mut self) -> Result<(), Fault> {
-        let (mut i, mut closed) = (0, 0);
-        while closed < self.face.samples.len() {
+    /// Finds the corners between the first ones, around the face until every side is complete.
+    fn find_remaining_corners(&mut self) -> Result<(), Fault> {
+        let (mut i, mut complete_count) = (0, 0);
+        while complete_count < self.face.samples.len() {
             i %= self.face.samples.len();
-            closed += 1;
-            if !self.face.samples.at(i).is_closed {
-                if let Some(new) = self.beyond(i)? {
+            complete_count += 1;
+            if !self.face.samples.cyclic(i).is_side_complete {
+                if let Some(new) = self.find_corner_beyond_side(i)? {
                     self.face.samples.insert(i + 1, new);
                     i += 1;
-                    closed = 0;
+                    complete_count = 0;
                 } else {
-                    self.face.samples.at_mut(i).is_closed = true;
+                    self.face.samples.cyclic_mut(i).is_side_complete = true;
                 }
             }
             i += 1;
@@ -323,63 +341,64 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         Ok(())
     }
 
-    /// Finds the corner beyond the side from sample `i` to the next, if there is one.
-    fn beyond(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
-        // A corner costs up to two, and those that are not settled one.
-        let pending = self.face.samples.iter().filter(|s| !s.is_settled).count() as u32;
+    /// Finds the corner beyond the side from sample `i` to the next; None if there is none.
+    fn find_corner_beyond_side(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
+        // A corner costs up to two queries, and each unknown core one.
+        let pending = self.face.samples.iter().filter(|s| !s.has_core).count() as u32;
         let count = self.query_count + 2;
         let is_last = count > self.query_limit() || count + pending > MAX_QUERIES;
         if self.face.samples.len() == MAX_CORNERS || is_last {
             return Ok(None);
         }
-        let [a, b] = [i, i + 1].map(|i| self.face.samples.at(i).found);
-        let (length, tilt_size) = (way(&a, &b).norm(), self.face.tilt_size);
-        let lean = larger(2.0 * self.face.rounding / length, SIDE_LEAN * tilt_size);
-        let lean = lesser(lean, tilt_size / 64.0);
-        let new = self.corner(across(&a, &b, tilt_size, lean))?;
-        if new.found.z > self.face.slop || self.is_found(&new) {
+        let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
+        let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
+        let lean = larger(2.0 * self.face.coord_eps / length, SIDE_LEAN * tilt_tan);
+        let lean = lesser(lean, tilt_tan / 64.0);
+        let new = self.query_corner(outward_tilt(&a, &b, tilt_tan, lean))?;
+        if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
         }
-        // One more of a round corner tells nothing.
-        let [to_a, to_b] = [a, b].map(|end| way(&end, &new.found).norm());
+        // Another sample of a rounded corner is not a new corner.
+        let [to_a, to_b] = [a, b].map(|end| offset(&end, &new.found).norm());
         let end = if to_a < to_b { i } else { i + 1 };
-        if self.is_near(self.face.samples.at(end), &new) {
-            self.remove_roundness(end)?;
-            if self.round_corner_at(&new).is_some() || self.is_found(&new) {
+        if self.is_near(self.face.samples.cyclic(end), &new) {
+            self.find_core(end)?;
+            if self.rounded_corner_at(&new).is_some() || self.mark_if_found(&new) {
                 return Ok(None);
             }
         }
-        let beyond = way(&a, &new.found).perp(&way(&a, &b));
-        Ok((beyond > self.flat() * length).then_some(new))
+        let beyond = offset(&a, &new.found).perp(&offset(&a, &b));
+        Ok((beyond > self.min_corner_height() * length).then_some(new))
     }
 
-    /// Returns how far a corner is beyond a side at least: rounding, and what is left of roundness, is less.
-    fn flat(&self) -> f64 {
-        self.face.rounding + self.face.tilt_size * self.face.slop
+    /// Returns the least height of a corner beyond a side, metres. Rounding errors and remaining roundings of corners
+    /// are smaller.
+    fn min_corner_height(&self) -> f64 {
+        self.face.coord_eps + self.face.tilt_tan * self.face.slop
     }
 
-    /// Returns the limit of queries: few corners, all of them sharp, need half.
+    /// Returns the limit on the queries: half of [`MAX_QUERIES`] for at most four corners, none rounded.
     fn query_limit(&self) -> u32 {
         let samples = &self.face.samples;
         let is_few = samples.len() <= 4 && samples.iter().all(|s| s.radius == 0.0);
         if is_few { MAX_QUERIES / 2 } else { MAX_QUERIES }
     }
 
-    /// Removes roundness: what moves in proportion to the tilt.
-    fn remove_roundness(&mut self, i: usize) -> Result<(), Fault> {
-        let mut full = *self.face.samples.at(i);
-        if full.is_settled || self.query_count >= self.query_limit() {
+    /// Finds the core of the corner of sample `i`, whose vertex moves in proportion to the tilt if it is rounded.
+    fn find_core(&mut self, i: usize) -> Result<(), Fault> {
+        let mut full = *self.face.samples.cyclic(i);
+        if full.has_core || self.query_count >= self.query_limit() {
             return Ok(());
         }
-        self.face.samples.at_mut(i).is_settled = true;
-        if self.round_corner_at(&full).is_some() {
+        self.face.samples.cyclic_mut(i).has_core = true;
+        if self.rounded_corner_at(&full).is_some() {
             return Ok(());
         }
-        let share = self.face.tilt_size / full.tilt.norm();
-        if share < 0.5 {
-            // One of the first directions found it.
-            let new = self.query(full.tilt * share)?;
-            if self.is_found(&new) {
+        let scale = self.face.tilt_tan / full.tilt.norm();
+        if scale < 0.5 {
+            // The sample is one of the first directions, with a wide tilt.
+            let new = self.query(full.tilt * scale)?;
+            if self.mark_if_found(&new) {
                 return Ok(());
             }
             full = new;
@@ -390,94 +409,94 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
                 break;
             }
             let near = self.query(tilt)?;
-            let outwards = way(&near.found, &full.found);
+            let outwards = offset(&near.found, &full.found);
             let moved = outwards.norm();
-            let most = self.face.slop / self.face.tilt_size.sqrt();
-            let (there, back) = (full.gain_over(&near), near.gain_over(&full));
-            let is_smooth = (there - back).abs() <= 0.5 * (there + back) + self.face.rounding;
+            let max_moved = self.face.slop / self.face.tilt_tan.sqrt();
+            let (gain1, gain2) = (full.gain_over(&near), near.gain_over(&full));
+            let is_smooth = (gain1 - gain2).abs() <= 0.5 * (gain1 + gain2) + self.face.coord_eps;
             if self.is_same(&full, &near) {
                 break;
             }
-            if moved <= most && is_smooth {
+            if moved <= max_moved && is_smooth {
                 full.radius = moved / (full.tilt - near.tilt).norm();
                 full.corner = near.found * 2.0 - full.found;
                 full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
                 break;
             }
-            // Half the tilt finds the higher one of two round ends of a line. A lean that makes them level, and
-            // more, finds this one.
+            // Half the tilt found the other, higher rounded end of a segment. A lean that compensates the difference
+            // of the heights, and more, finds this end.
             let lean = lesser(
-                0.125 * self.face.tilt_size + back / moved,
-                self.face.tilt_size,
+                0.125 * self.face.tilt_tan + gain2 / moved,
+                self.face.tilt_tan,
             );
             tilt += outwards * (lean / moved);
         }
-        *self.face.samples.at_mut(i) = FaceSample {
-            is_settled: true,
-            is_closed: self.face.samples.at(i).is_closed,
+        *self.face.samples.cyclic_mut(i) = FaceSample {
+            has_core: true,
+            is_side_complete: self.face.samples.cyclic(i).is_side_complete,
             ..full
         };
         Ok(())
     }
 
-    /// Returns the sample of a round corner that another sample is one more of.
-    fn round_corner_at(&self, new: &FaceSample) -> Option<FaceSample> {
-        let mut round = self.face.samples.iter().filter(|s| s.radius > 0.0);
-        round.find(|s| self.is_near(s, new)).copied()
+    /// Returns the sample of the rounded corner to which another sample belongs.
+    fn rounded_corner_at(&self, new: &FaceSample) -> Option<FaceSample> {
+        let mut rounded = self.face.samples.iter().filter(|s| s.radius > 0.0);
+        rounded.find(|s| self.is_near(s, new)).copied()
     }
 
     /// Makes the polygon of the samples.
-    fn join_corners(&mut self) {
-        // One that was found twice is one, to the rounding of both.
-        let merged = larger(self.face.slop, 4.0 * self.face.rounding);
+    fn build_polygon(&mut self) {
+        // A corner found twice may differ by the rounding of both.
+        let merged = larger(self.face.slop, 4.0 * self.face.coord_eps);
         let samples = self.face.samples;
         let corners: Polygon<MAX_CORNERS> = samples.iter().map(|s| s.corner).collect();
-        let corners = corners.tidied(merged, self.flat());
+        let corners = corners.simplified(merged, self.min_corner_height());
         let radii = samples.iter().map(|s| s.radius);
         let radius = radii.fold(f64::INFINITY, lesser);
-        // There may be corners between those of a full ring, and the support plane may be higher than all.
+        // A full list may lack corners, and the support plane may be higher than all corners.
         let is_sharp = samples.iter().all(|s| s.corner == s.found);
-        let has_highest = corners.iter().any(|corner| corner.z <= self.face.rounding);
+        let has_highest = corners.iter().any(|corner| corner.z <= self.face.coord_eps);
         self.face.is_complete = is_sharp && has_highest && samples.len() < MAX_CORNERS;
-        self.face.round = (2.0 * radius * self.face.slop).sqrt();
+        self.face.rounded_halfwidth = (2.0 * radius * self.face.slop).sqrt();
         self.face.corners = corners;
     }
 
-    /// Confirms the cached face, and returns how it moved; None where it is another.
-    fn find_cached(&mut self, cached: &CachedFace) -> Result<Option<Motion>, Fault> {
+    /// Queries the cached directions. Returns the motion of the cached face; None if the face has changed.
+    fn confirm_cached(&mut self, cached: &CachedFace) -> Result<Option<Motion>, Fault> {
         for [tilt, ..] in cached.samples() {
-            // NaN ends here too, and what has no tilt.
+            // Fails for NaN and for a zero tilt too.
             if !(tilt.norm() > 0.0 && tilt.norm() <= 0.5) {
                 return Ok(None);
             }
             let new = self.query(tilt)?;
             self.face.samples.push(new);
         }
-        let slop = larger(f64::from(cached.slop), self.face.rounding);
-        (self.face.slop, self.face.tilt_size) = (slop, cached.tilt_size.into());
-        let slack = 0.25 * slop + self.face.rounding;
+        let slop = larger(f64::from(cached.slop), self.face.coord_eps);
+        (self.face.slop, self.face.tilt_tan) = (slop, cached.tilt_tan.into());
+        let slack = 0.25 * slop + self.face.coord_eps;
         let Some(motion) = cached.motion(&self.face.samples, slack) else {
             return Ok(None);
         };
         for (new, [tilt, _, offset]) in self.face.samples.iter_mut().zip(cached.samples()) {
-            let low = 0.5 * offset.dot(&tilt);
+            let drop = 0.5 * offset.dot(&tilt);
             new.radius = offset.norm() / tilt.norm();
             let offset = motion.turn * offset;
-            new.corner += Vec3::new(offset.x, offset.y, low);
+            new.corner += Vec3::new(offset.x, offset.y, drop);
             new.tilt = motion.turn * tilt;
         }
         if cached.is_complete != 0.0 {
             let heights = self.face.samples.iter().map(|s| -s.corner.z);
-            self.face.top = heights.fold(f64::NEG_INFINITY, larger);
+            self.face.support_height = heights.fold(f64::NEG_INFINITY, larger);
         } else {
-            self.find_plane()?;
+            self.query_support_plane()?;
         }
-        let top = self.face.top;
+        let height = self.face.support_height;
         for sample in self.face.samples.iter_mut() {
-            sample.found.z += top;
-            sample.corner.z = larger(sample.corner.z + top, 0.0);
+            sample.found.z += height;
+            sample.corner.z = larger(sample.corner.z + height, 0.0);
         }
-        let is_low = |s: &FaceSample| s.corner.z > slop + self.face.rounding;
-        Ok((!self.face.samples.iter().any(is_low)).then_some(motion))
+        let is_outside = |s: &FaceSample| s.corner.z > slop + self.face.coord_eps;
+        Ok((!self.face.samples.iter().any(is_outside)).then_some(motion))
     }
 }

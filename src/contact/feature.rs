@@ -1,82 +1,90 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The feature of an object in a contact: the vertices that its surface has around the deepest point.
+//! The feature of an object in a contact: the vertices of its surface around the deepest point.
 //!
-//! Wanted are the support vertices of four tilted normals, a right angle apart: n + T (±e1), n + T (±e2).
-//! Of a face they are the corners that reach farthest, of a round surface they are evenly around.
+//! Finds the support vertices along four directions tilted from the normal n by T: n + T (±e1), n + T (±e2).
+//! They are the outermost corners of a face, and four evenly spaced points of a curved surface.
+//!
+//! Terms. The *drop* of a vertex is its distance below the support plane; here it is in units of the depth. The
+//! *cover* of a tilted direction is the largest tilt towards it among the evaluated directions that returned
+//! its predicted vertex.
 //!
 //! 1. *Project* the known vertices of both objects into the contact frame, in one pass. obj2 is mirrored
-//!    (−b for b), so that the normal leaves both objects, and all that follows serves either.
-//! 2. *Predict* of the four the known vertex that is farthest along each.
-//! 3. *Polytope*, where two known directions found one vertex: a prediction holds where a known direction
-//!    that found the vertex is tilted that way by [`MIN_COVER`] T; the least covered is queried first. (A
-//!    vertex is the support vertex of a convex set of directions, and the contact normal is mostly one.)
-//!    Beside an edge (the four are two vertices) a face may be that no direction has found: both sides are
-//!    queried, unless a known direction that found an end is tilted across it.
-//! 4. *Round* otherwise: opposite tilts are queried. Where two vertices are symmetric about the deepest
-//!    point, so is the contact. A query that returns its prediction shows a polytope.
-//! 5. *Fan*: the four in their order around the deepest point, with a fifth corner of a polytope, or the
-//!    points between them of a disc.
+//!    (−b for b), so that the normal points out of both objects and all later steps serve either.
+//! 2. *Predict* for each of the four directions the known vertex farthest along it.
+//! 3. *Polytope*: if two evaluated directions returned the same vertex. A prediction is accepted if its cover is
+//!    at least [`MIN_COVER`] T; otherwise it is queried, the least covered first. (The directions that return a
+//!    vertex form a convex set, which mostly contains the contact normal.) If the four vertices are only two,
+//!    the ends of an edge, a face beside it may be unknown: both sides are queried, unless an evaluated
+//!    direction that returned an end is tilted to that side.
+//! 4. *Curved* otherwise: opposite directions are queried. If the two opposite vertices are symmetric about the
+//!    deepest point, that point is the center of pressure. If a query returns its predicted vertex, the object
+//!    is taken for a polytope.
+//! 5. *Fan*: the four vertices in their order around the deepest point, with a fifth corner of a polytope, or
+//!    with the points between them on the rim of a disc.
 //!
-//! One file, because each step reads the same projection; projection, prediction, queries and fan are its parts.
-//! No reference is known to us; the figures are from `c-tests/tests/extension/pressure.c` and recorded contacts.
+//! One file above 400 lines, because all steps use the same projection. Related: Bullet (`btConvexConvexAlgorithm`)
+//! and MuJoCo (`multiccd`) rotate an object by small angles and repeat the whole query; here only the support
+//! function is evaluated along tilted normals. Figures are from `c-tests/tests/extension/pressure.c` and recorded
+//! contacts.
 
 use crate::contact::frame::ContactFrame;
-use crate::contact::polygon::{Vec2, way};
+use crate::contact::polygon::{Vec2, offset};
 use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
 
-/// The known vertices that are looked at: the last of more.
+/// Number of most recent known vertices used.
 pub const MAX_KNOWN: usize = 16;
-/// T, as a tangent, is this times the root of depth / extent, so that a round surface of that radius, or of
-/// half of it, is seen no lower than half the depth, and of a flat one that leans by a depth over its
-/// width all corners. Measured: ÷1.2 a corner of a leaning box is missed, ×1.2 a cone on its side steps by
-/// 7 mm.
-const TILT: f64 = 1.8;
-/// T at most: 14°, for what is deeper than a fiftieth of its extent.
-const MAX_TILT: f64 = 0.25;
-/// The share of T that a known direction must be tilted by to find what T would. Measured: 0.4 errs by
-/// 7.5 mm rms where 0.6 errs by 1.8.
+/// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
+/// a drop of 1.6 depths at that tilt (R T²/2), and all corners are found of a face whose drop grows by a depth
+/// over its width. Measured: with the factor divided by 1.2 a corner of a leaning box is missed; multiplied by
+/// 1.2 the position of a cone on its side jumps by 7 mm.
+const TILT_FACTOR: f64 = 1.8;
+/// Largest T, 14°; reached if the depth exceeds extent / 52.
+const MAX_TILT_TAN: f64 = 0.25;
+/// Least cover of an accepted prediction, relative to T. Measured: root mean square error of 7.5 mm with 0.4,
+/// 1.8 mm with 0.6.
 const MIN_COVER: f64 = 0.6;
-/// The cosine between the normal and a known direction that tells of a feature: others look at the object from
-/// the side or from behind.
+/// Least cosine between the normal and an evaluated direction that is used. Others return vertices at the side or
+/// at the back of the object.
 const MIN_COSINE: f64 = 0.1;
-/// Largest sum of two opposite vertices that count as symmetric, as a share of the extent.
+/// Largest length of the sum of two opposite vertices that count as symmetric, relative to the extent.
 const SYMMETRY_REL_TOL: f64 = 0.004;
-/// A feature that ends within this share of the extent is a point: the center of pressure is within a
-/// quarter of that.
+/// A feature no larger than this, relative to the extent, counts as a point: the center of pressure is within a
+/// quarter of that size.
 const POINT_REL: f64 = 0.016;
-/// Vertices closer than this share of the extent are one.
+/// Distance, relative to the extent, below which two vertices are the same.
 const SAME_REL: f64 = 1e-7;
-/// Largest distance of a fourth corner of the same face below the plane of three, in depths. Beyond it the
-/// surface between is not as low as a line to the corner. Insensitive: 0.1 to 1 tried.
-const SAME_FACE: f64 = 0.1;
-/// The deepest point is beyond a side, and three corners are no line, by this share. Insensitive: 0.005 to
-/// 0.08 tried.
+/// Largest difference of the drop, in depths, between a fourth corner and the plane of three for a common face.
+/// Above it the surface between them is not flat. Insensitive: 0.1 to 1 tried.
+const SAME_FACE_DROP_TOL: f64 = 0.1;
+/// Relative area below which three corners count as collinear, and the deepest point as inside a side.
+/// Insensitive: 0.005 to 0.08 tried.
 const NARROW_REL: f64 = 0.02;
-/// Largest distance of a rim's point from the rim, as a share of the radius: ten times the rounding of
+/// Largest distance of a vertex from the fitted rim of a disc, relative to the radius: ten times the rounding of
 /// callbacks in single precision.
 const RIM_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
-/// The part of what all vertices are lower by that is taken off: a round surface of radius R is lower by
-/// R T²/2 all around. Measured: 0 lets a lying capsule step by 5 mm; 1, right for spheres, leaves it 7 mm off.
-const LEVEL: f64 = 0.75;
+/// Fraction of the smallest drop of all vertices that is subtracted from each: a curved surface of radius R has
+/// the drop R T²/2 all around. Measured: with 0 the position of a lying capsule jumps by 5 mm; with 1, exact for
+/// spheres, its error is 7 mm.
+const COMMON_DROP_FACTOR: f64 = 0.75;
 /// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest
-/// point is inside. Small beside the flank of an edge.
-const MARGIN: f64 = 1.0 / 512.0;
-/// Twice the area of a triangle that has none, as a share of the square of the margin.
+/// point is inside. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
+const VERTEX_OFFSET_REL: f64 = 1.0 / 512.0;
+/// Least value of twice the area of a triangle, relative to the square of the vertex offset.
 const MIN_AREA_REL: f64 = f64::EPSILON;
 
-/// The four tilts: the way of each, along the axes.
-const WAYS: [Vec2; 4] = [
+/// The four tilt directions, along the axes.
+const TILT_DIRECTIONS: [Vec2; 4] = [
     Vec2::new(1.0, 0.0),
     Vec2::new(0.0, 1.0),
     Vec2::new(-1.0, 0.0),
     Vec2::new(0.0, -1.0),
 ];
 const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
-/// The ways between them.
+/// The directions between them.
 const DIAGONALS: [Vec2; 4] = [
     Vec2::new(H, H),
     Vec2::new(-H, H),
@@ -84,80 +92,79 @@ const DIAGONALS: [Vec2; 4] = [
     Vec2::new(H, -H),
 ];
 
-/// Returns whether two vertices are no farther apart than `distance` along either axis.
+/// Returns whether the distance of two vertices along each axis is at most `distance`.
 #[inline(always)]
 fn is_within(a: &Vec3, b: &Vec3, distance: f64) -> bool {
     (a.x - b.x).abs() <= distance && (a.y - b.y).abs() <= distance
 }
 
-/// Returns twice the area of the triangle of the deepest point and two vertices, positive counterclockwise.
+/// Returns twice the area of the triangle of the deepest point and two vertices, positive if counterclockwise.
 #[inline(always)]
 pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
 /// Four vertices of an object around the deepest point, counterclockwise: the support vertices of the tilted
-/// normals, predicted or queried, or those about an edge.
+/// directions, predicted or queried, or those beside an edge.
 struct Feature {
     vertices: [Vec3; 4],
-    /// The way outwards of each, unit.
-    ways: [Vec2; 4],
-    /// Position of each along its tilted normal, over T.
+    /// The outward direction of each, unit.
+    outwards: [Vec2; 4],
+    /// The height of each along its tilted direction, divided by T.
     scores: [f64; 4],
-    /// Tilt, towards that way, of a known direction that found the vertex.
+    /// The cover of each.
     cover: [f64; 4],
-    /// They are vertices of a polytope: two known directions found the same one. Else each tilt found another
-    /// vertex.
+    /// True if two evaluated directions returned the same vertex: they are vertices of a polytope.
     is_polytope: bool,
 }
 
 /// The vertices of a feature, counterclockwise around the deepest point.
 #[derive(Clone, Copy, Debug)]
 pub struct Fan {
-    /// `vertices[len]` is the first one again.
+    /// `vertices[len]` repeats the first one.
     pub vertices: [Vec3; Fan::CAPACITY],
-    /// Twice the area of the triangle of the deepest point, each vertex and the next one.
+    /// For each vertex twice the area of the triangle of the deepest point, it and the next vertex.
     pub areas: [f64; Fan::CAPACITY],
     pub len: usize,
 }
 
-/// Returns how much lower the plane of three vertices is a metre along each axis, in depths.
+/// Returns the gradient of the drop in the plane of three vertices, depths per metre.
 #[inline(always)]
-fn slope_of([a, b, c]: [&Vec3; 3]) -> Vec2 {
-    let across = (b - a).cross(&(c - a));
-    across.xy() / -across.z
+fn drop_gradient([a, b, c]: [&Vec3; 3]) -> Vec2 {
+    let normal = (b - a).cross(&(c - a));
+    normal.xy() / -normal.z
 }
 
-/// The vertices of both objects around the deepest point of a contact: known ones and queries.
+/// The projected known vertices of both objects of a contact, and queries of further ones.
 pub struct FeatureQuery<'q, A, B, const N: usize> {
     md: &'q MinkowskiDifference<A, B>,
     set: &'q VertexSet<N>,
     pub frame: ContactFrame,
-    /// x, y and low of each known vertex; low in depths.
+    /// x, y and drop (in depths) of each known vertex.
     known: &'q [[[f64; 2]; 3]],
-    /// The index in the set of the first of them.
-    first: usize,
-    /// x and y of the center of each object; that of the witness points where none is known.
+    /// The index of the first of them in the set.
+    first_known: usize,
+    /// x and y of the center of each object; without centers, of the middle of the witness points.
     centers: [[f64; 2]; 2],
-    /// The object that is known to reach less far from the contact, 0 or 1.
+    /// The object of smaller extent, as far as its vertices are known, 0 or 1.
     pub smaller: usize,
-    /// Length of that extent, metres.
+    /// Largest distance of its known vertices and center from the contact, metres.
     extent: f64,
-    /// The unit of lows, metres.
+    /// The unit of drops, metres.
     pub depth: f64,
     /// Distance of the support planes from the frame's origin, metres.
-    half: f64,
+    half_gap: f64,
     /// T, a tangent.
     tilt: f64,
-    /// Depth over T, metres.
-    fall: f64,
+    /// Depth divided by T, metres.
+    depth_over_tilt: f64,
     /// Distance by which vertices are moved outwards, metres.
-    pub margin: f64,
+    pub vertex_offset: f64,
 }
 
 impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N> {
-    /// Projects the known vertices, to `known`. The frame's origin is half-way between the support planes, which are
-    /// `gap` apart; `depth`: that, or the tolerance where it is larger.
+    /// Projects the known vertices and stores them in `known`. The frame's origin is midway between the support
+    /// planes. `gap`: the distance of these, metres. `depth`: the larger of that and the tolerance, metres.
     #[inline(always)]
     pub fn new(
         md: &'q MinkowskiDifference<A, B>,
@@ -167,7 +174,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         centers: Option<[Vec3; 2]>,
         [gap, depth]: [f64; 2],
     ) -> Self {
-        let (half, share) = (0.5 * gap, 1.0 / depth);
+        let (half_gap, per_depth) = (0.5 * gap, 1.0 / depth);
         let (o, n, [e1, e2]) = (frame.origin, frame.normal, frame.axes);
         let mut far2 = [0.0; 2];
         let mut project = |[x, y, z]: [[f64; 2]; 3]| {
@@ -178,34 +185,34 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                 projected[0][k] = e1.x * x + e1.y * y + e1.z * z;
                 projected[1][k] = e2.x * x + e2.y * y + e2.z * z;
                 let height = n.x * x + n.y * y + n.z * z;
-                projected[2][k] = larger((half - height) * share, 0.0);
+                projected[2][k] = larger((half_gap - height) * per_depth, 0.0);
             }
             projected
         };
-        let first = set.len().saturating_sub(MAX_KNOWN);
-        let len = set.len() - first;
+        let first_known = set.len().saturating_sub(MAX_KNOWN);
+        let len = set.len() - first_known;
         for (i, projected) in known.iter_mut().enumerate().take(len) {
-            *projected = project(set.coords(first + i));
+            *projected = project(set.coords(first_known + i));
         }
         let [c1, c2] = centers.unwrap_or([o; 2]);
         let [x, y, _] = project([[c1.x, -c2.x], [c1.y, -c2.y], [c1.z, -c2.z]]);
         let smaller = usize::from(far2[1] < far2[0]);
         let extent = far2[smaller].sqrt();
-        let tilt = lesser(TILT * (depth / extent).sqrt(), MAX_TILT);
+        let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
         Self {
             md,
             set,
             frame,
             known: known.get(..len).unwrap_or(&[]),
-            first,
+            first_known,
             centers: [x, y],
             smaller,
             extent,
             depth,
-            half,
+            half_gap,
             tilt,
-            fall: depth / tilt,
-            margin: larger(depth * MARGIN, 64.0 * EPSILON * extent),
+            depth_over_tilt: depth / tilt,
+            vertex_offset: larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent),
         }
     }
 
@@ -215,10 +222,10 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let k = object % 2;
         self.known
             .iter()
-            .map(move |[x, y, low]| Vec3::new(x[k], y[k], low[k]))
+            .map(move |[x, y, drop]| Vec3::new(x[k], y[k], drop[k]))
     }
 
-    /// Queries an object along the normal with a tilt, as tangents.
+    /// Evaluates an object along the tilted normal. `tilt`: tangents.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -230,52 +237,52 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             .frame
             .project(&self.md.support_of_object(object, &dir))?
             * side;
-        let low = larger((self.half - p.z) / self.depth, 0.0);
-        Ok(Vec3::new(p.x, p.y, low))
+        let drop = larger((self.half_gap - p.z) / self.depth, 0.0);
+        Ok(Vec3::new(p.x, p.y, drop))
     }
 
-    /// Returns how far a vertex is along each of the tilted normals, over T.
+    /// Returns the height of a vertex along each of the tilted directions, divided by T.
     #[inline(always)]
     fn scores(&self, v: &Vec3) -> [f64; 4] {
-        let low = v.z * self.fall;
-        [v.x - low, v.y - low, -v.x - low, -v.y - low]
+        let drop = v.z * self.depth_over_tilt;
+        [v.x - drop, v.y - drop, -v.x - drop, -v.y - drop]
     }
 
-    /// Returns the distance below which two vertices are one, metres.
+    /// Returns the distance below which two vertices are the same, metres.
     #[inline(always)]
-    fn same(&self) -> f64 {
+    fn same_distance(&self) -> f64 {
         SAME_REL * self.extent
     }
 
-    /// Predicts the support vertices of the tilted normals.
+    /// Predicts the support vertices of the tilted directions from the known vertices.
     #[inline(always)]
     fn predict(&self, object: usize) -> Feature {
         let mut found = Feature {
             vertices: [Vec3::zeros(); 4],
-            ways: WAYS,
+            outwards: TILT_DIRECTIONS,
             scores: [f64::NEG_INFINITY; 4],
             cover: [0.0; 4],
             is_polytope: false,
         };
-        let mut is_found = [false; 4];
+        let mut is_returned = [false; 4];
         let [e1, e2] = &self.frame.axes;
-        let same = self.same();
+        let same = self.same_distance();
         for (i, v) in self.known(object).enumerate() {
             let scores = self.scores(&v);
-            let dir = self.set.dir(self.first + i);
+            let dir = self.set.dir(self.first_known + i);
             let is_facing = self.frame.normal.dot(&dir) > MIN_COSINE;
             let (x, y) = (e1.dot(&dir), e2.dot(&dir));
             for (k, tilt) in [x, y, -x, -y].into_iter().enumerate() {
                 let gain = scores[k] - found.scores[k];
                 if gain > same {
                     (found.scores[k], found.vertices[k]) = (scores[k], v);
-                    (is_found[k], found.cover[k]) = (is_facing, 0.0);
+                    (is_returned[k], found.cover[k]) = (is_facing, 0.0);
                     if is_facing {
                         found.cover[k] = tilt;
                     }
                 } else if gain >= -same && is_facing && is_within(&v, &found.vertices[k], same) {
-                    found.is_polytope |= is_found[k];
-                    is_found[k] = true;
+                    found.is_polytope |= is_returned[k];
+                    is_returned[k] = true;
                     found.cover[k] = larger(tilt, found.cover[k]);
                 }
             }
@@ -283,18 +290,18 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         found
     }
 
-    /// Finds the feature of an object; None where opposite vertices are symmetric about the deepest point. `towards`:
-    /// the way that is queried first of what may be round.
+    /// Finds the feature of an object; None if opposite vertices are symmetric about the deepest point. `towards`:
+    /// selects the direction that is queried first if the object may be curved.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    fn find(&self, object: usize, towards: Vec2) -> Result<Option<Feature>, Fault> {
+    fn find_feature(&self, object: usize, towards: Vec2) -> Result<Option<Feature>, Fault> {
         let mut found = self.predict(object);
         let mut is_queried = [false; 4];
         let mut next = usize::from(towards.y.abs() > towards.x.abs());
         let (mut hits, mut misses) = (0, 0);
-        // Each turn queries another one of the four.
+        // Each iteration queries another one of the four directions.
         for _ in 0..4 {
             if found.is_polytope {
                 let cover = &found.cover;
@@ -303,17 +310,18 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
                     break;
                 }
             }
-            let v = self.query(object, WAYS[next % 4] * self.tilt)?;
-            if is_within(&v, &found.vertices[next % 4], self.same()) {
+            let v = self.query(object, TILT_DIRECTIONS[next % 4] * self.tilt)?;
+            if is_within(&v, &found.vertices[next % 4], self.same_distance()) {
                 (found.is_polytope, hits) = (true, hits + 1);
             } else {
                 misses += 1;
-                // Directions that share a plane with the axis of a disc find one point of its rim.
+                // Two directions in a plane with a disc's axis return the same rim point. So a vertex returned twice
+                // does not prove a polytope; after two failed predictions and no correct one it is not one.
                 found.is_polytope &= hits > 0 || misses < 2;
             }
             is_queried[next % 4] = true;
             if found.is_polytope {
-                found.consider(&v, &self.scores(&v), &is_queried);
+                found.improve_predictions(&v, &self.scores(&v), &is_queried);
             }
             (found.vertices[next % 4], found.cover[next % 4]) = (v, f64::INFINITY);
             if !found.is_polytope {
@@ -332,40 +340,40 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             }
         }
         if found.is_polytope {
-            self.confirm(object, &mut found)?;
+            self.query_sides_of_edge(object, &mut found)?;
         }
         Ok(Some(found))
     }
 
-    /// Looks beside a feature that is one vertex or an edge, where a face may be that no direction has found:
-    /// queries across it, unless a known direction that found one of its vertices is tilted so.
+    /// Queries both sides of a feature that is an edge, because a face beside it may be unknown; not a side to
+    /// which an evaluated direction that returned an end is tilted.
     #[inline(always)]
-    fn confirm(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
+    fn query_sides_of_edge(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
         let [a, rest @ ..] = feature.vertices;
-        let is_same = |p: &Vec3, q: &Vec3| is_within(p, q, self.same());
+        let is_same = |p: &Vec3, q: &Vec3| is_within(p, q, self.same_distance());
         let Some(&b) = rest.iter().find(|v| !is_same(v, &a)) else {
             return Ok(());
         };
         if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
             return Ok(());
         }
-        let along = way(&a, &b) / way(&a, &b).norm();
+        let along = offset(&a, &b) / offset(&a, &b).norm();
         let left = Vec2::new(-along.y, along.x);
         feature.vertices = [a, a, b, b];
-        feature.ways = [-along, -left, along, left];
+        feature.outwards = [-along, -left, along, left];
         let [_, vertex1, _, vertex3] = &mut feature.vertices;
         for (vertex, out) in [(vertex1, -left), (vertex3, left)] {
             let is_covered = self.known(object).enumerate().any(|(i, p)| {
-                let dir = self.set.dir(self.first + i);
+                let dir = self.set.dir(self.first_known + i);
                 let cosine = self.frame.normal.dot(&dir);
                 let tilt = Vec2::from(self.frame.axes.map(|e| e.dot(&dir) / cosine));
-                let is_across =
+                let is_tilted_out =
                     tilt.dot(&out) - 2.0 * tilt.perp(&out).abs() >= MIN_COVER * self.tilt;
-                cosine > MIN_COSINE && is_across && (is_same(&p, &a) || is_same(&p, &b))
+                cosine > MIN_COSINE && is_tilted_out && (is_same(&p, &a) || is_same(&p, &b))
             });
             if !is_covered {
                 let p = self.query(object, out * self.tilt)?;
-                if out.dot(&way(&a, &p)) > 2.0 * self.margin {
+                if out.dot(&offset(&a, &p)) > 2.0 * self.vertex_offset {
                     *vertex = p;
                 }
             }
@@ -373,7 +381,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         Ok(())
     }
 
-    /// Returns the way from the deepest point to the center of an object.
+    /// Returns the displacement from the deepest point to the center of an object.
     #[inline(always)]
     pub fn towards_center(&self, object: usize) -> Vec2 {
         self.centers.map(|xy| xy[object % 2]).into()
@@ -381,78 +389,85 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
 
     /// Returns whether two vertices are symmetric about the deepest point.
     fn is_symmetric(&self, a: &Vec3, b: &Vec3) -> bool {
-        let most = SYMMETRY_REL_TOL * self.extent;
-        (a + b).xy().norm_squared() < most * most && (a.z - b.z).abs() < SAME_FACE
+        let tolerance = SYMMETRY_REL_TOL * self.extent;
+        let distance2 = (a + b).xy().norm_squared();
+        distance2 < tolerance * tolerance && (a.z - b.z).abs() < SAME_FACE_DROP_TOL
     }
 
+    /// Returns whether the vertices, as far down as the depth, are within a point's size.
     fn is_point(&self, vertices: &[Vec3]) -> bool {
         vertices.iter().all(|v| {
-            let most = POINT_REL * self.extent * larger(v.z, 1.0);
-            v.xy().norm_squared() <= most * most
+            let size = POINT_REL * self.extent * larger(v.z, 1.0);
+            v.xy().norm_squared() <= size * size
         })
     }
 
-    /// Makes the fan of an object. `towards`: the way that is queried first of what may be round. Returns false
-    /// where the deepest point is the center of pressure: the object is symmetric about it, or ends close to it as far
-    /// as the depth goes.
+    /// Finds the feature of an object and makes its fan. `towards`: selects the direction that is queried first if
+    /// the object may be curved. Returns false if the deepest point is the center of pressure: the feature is
+    /// symmetric about it, or is a point.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    pub fn fan(&self, object: usize, towards: Vec2, fan: &mut Fan) -> Result<bool, Fault> {
-        let Some(feature) = self.find(object, towards)? else {
+    pub fn build_fan(&self, object: usize, towards: Vec2, fan: &mut Fan) -> Result<bool, Fault> {
+        let Some(feature) = self.find_feature(object, towards)? else {
             return Ok(false);
         };
         let vertices = &feature.vertices;
-        let is_round = !feature.is_polytope;
-        let between = is_round.then(|| self.rim(vertices)).flatten();
+        let is_curved = !feature.is_polytope;
+        let between = is_curved.then(|| self.fit_disc_rim(vertices)).flatten();
         fan.len = 0;
         for k in 0..4 {
-            fan.push(self.moved(&vertices[k], feature.ways[k]));
+            fan.push(self.offset_outwards(&vertices[k], feature.outwards[k]));
             if let Some(between) = &between {
-                fan.push(self.moved(&between[k], DIAGONALS[k]));
+                fan.push(self.offset_outwards(&between[k], DIAGONALS[k]));
             }
         }
         if between.is_none() {
-            if let Some((i, v)) = self.fifth(object, vertices)? {
+            if let Some((i, v)) = self.fifth_corner(object, vertices)? {
                 fan.insert(i, v);
             }
         }
         if self.is_point(fan.vertices.get(..fan.len).unwrap_or(&[])) {
             return Ok(false);
         }
-        let lows = vertices.iter().chain(between.iter().flatten()).map(|v| v.z);
-        let level = LEVEL * lows.fold(1.0, lesser);
+        let drops = vertices.iter().chain(between.iter().flatten()).map(|v| v.z);
+        let common_drop = COMMON_DROP_FACTOR * drops.fold(1.0, lesser);
         for v in fan.vertices.iter_mut().take(fan.len) {
-            v.z -= level;
+            v.z -= common_drop;
         }
-        if !fan.close() {
-            fan.enclose(self.margin);
+        if !fan.compute_areas() {
+            fan.extend_to_deepest_point(self.vertex_offset);
         }
         Ok(true)
     }
 
-    /// Returns a vertex moved outwards by the margin.
+    /// Returns a vertex moved by the vertex offset along unit `out`.
     #[inline(always)]
-    fn moved(&self, v: &Vec3, way: Vec2) -> Vec3 {
-        Vec3::new(v.x + self.margin * way.x, v.y + self.margin * way.y, v.z)
+    fn offset_outwards(&self, v: &Vec3, out: Vec2) -> Vec3 {
+        let distance = self.vertex_offset;
+        Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z)
     }
 
-    /// Returns the corner that a polytope has beyond a side of the four, moved outwards, and its place
-    /// among them.
+    /// Queries a fifth corner of a polytope, beyond a side of the four vertices. Returns its index among them and
+    /// the corner, moved outwards.
     ///
-    /// Queries a fifth vertex: beyond the longest side of a triangle, where two tilts found one corner; or beyond
-    /// the side that has the deepest point outside. The direction is the normal of the plane of three corners,
-    /// tilted across that side.
+    /// If two of the four are the same corner, the side is the longest one of the triangle; else it is the side
+    /// beyond which the deepest point lies, if any. The direction is the normal of the plane of three corners,
+    /// tilted outwards over that side.
     #[inline(always)]
-    fn fifth(&self, object: usize, vertices: &[Vec3; 4]) -> Result<Option<(usize, Vec3)>, Fault> {
+    fn fifth_corner(
+        &self,
+        object: usize,
+        vertices: &[Vec3; 4],
+    ) -> Result<Option<(usize, Vec3)>, Fault> {
         let at = |i: usize| &vertices[i % 4];
         let lengths2 = [0, 1, 2, 3].map(|i| (at(i + 1) - at(i)).xy().norm_squared());
         let areas = [0, 1, 2, 3].map(|i| area2(at(i), at(i + 1)));
-        let twice = (0..4).find(|i| is_within(at(*i), at(i + 1), 2.0 * self.margin));
-        let (side, opposite) = if let Some(twice) = twice {
+        let repeated = (0..4).find(|i| is_within(at(*i), at(i + 1), 2.0 * self.vertex_offset));
+        let (side, opposite) = if let Some(repeated) = repeated {
             let side = (1..4).fold(0, |k, i| if lengths2[i] > lengths2[k] { i } else { k });
-            let is_next = (side + 1) % 4 == twice;
+            let is_next = (side + 1) % 4 == repeated;
             (side, side + if is_next { 3 } else { 2 })
         } else {
             let side = (1..4).fold(0, |k, i| if areas[i] < areas[k] { i } else { k });
@@ -464,66 +479,68 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let [o, p, q] = [opposite, side, side + 1].map(at);
         let area = area2(&(p - o), &(q - o));
         let length = lengths2[side].sqrt();
-        // Beyond a side that is all too low nothing is shared.
-        let is_wide = area > NARROW_REL * lengths2[side] && area > 2.0 * self.margin * length;
+        // Sides whose drop exceeds the depth are outside the overlap.
+        let is_wide =
+            area > NARROW_REL * lengths2[side] && area > 2.0 * self.vertex_offset * length;
         if !(is_wide && (p.z < 1.0 || q.z < 1.0)) {
             return Ok(None);
         }
-        let slope = slope_of([o, p, q]);
+        let gradient = drop_gradient([o, p, q]);
         let out = Vec2::new(q.y - p.y, p.x - q.x) / length;
-        let v = self.query(object, slope * self.depth + out * self.tilt)?;
-        let is_beyond = out.dot(&way(p, &v)) > 2.0 * self.margin;
-        let is_in_plane = v.z <= o.z + slope.dot(&way(o, &v)) + SAME_FACE;
-        Ok((is_beyond && is_in_plane).then(|| (side + 1, self.moved(&v, out))))
+        let v = self.query(object, gradient * self.depth + out * self.tilt)?;
+        let is_beyond = out.dot(&offset(p, &v)) > 2.0 * self.vertex_offset;
+        let is_in_plane = v.z <= o.z + gradient.dot(&offset(o, &v)) + SAME_FACE_DROP_TOL;
+        Ok((is_beyond && is_in_plane).then(|| (side + 1, self.offset_outwards(&v, out))))
     }
 
-    /// Returns the points between four vertices, where these are on the rim of a disc. A disc returns, for a
-    /// direction, its middle and the radius that way; so may corners of a square, where it lies as the ways do
-    /// to a ten thousandth of a radian.
-    fn rim(&self, vertices: &[Vec3; 4]) -> Option<[Vec3; 4]> {
+    /// Returns the points midway between the four vertices on the rim of a disc; None if the vertices are not on
+    /// such a rim. A disc returns its center plus the radius times the direction in its plane. (A square whose
+    /// corners lie along the four tilt directions within 1e-4 rad is mistaken for a disc.)
+    fn fit_disc_rim(&self, vertices: &[Vec3; 4]) -> Option<[Vec3; 4]> {
         let [a, b, c, d] = vertices;
-        let slope = slope_of([a, b, c]);
-        let lean = slope * self.depth;
-        let share = 1.0 / (1.0 + lean.norm_squared());
-        // The way in which a disc that leans so reaches farthest: the tilted normal without its part along the
-        // axis of the disc.
-        let outwards = |way: Vec2| {
-            let tilt = way * self.tilt - lean;
-            let down = lean.dot(&tilt) * share;
-            let across = tilt - lean * down;
-            across / (across.norm_squared() + down * down).sqrt()
+        let gradient = drop_gradient([a, b, c]);
+        let lean = gradient * self.depth;
+        let scale = 1.0 / (1.0 + lean.norm_squared());
+        // The direction in the leaning disc's plane that is farthest along the tilted normal: that normal without
+        // its part along the axis of the disc.
+        let outwards = |out: Vec2| {
+            let tilt = out * self.tilt - lean;
+            let down = lean.dot(&tilt) * scale;
+            let in_plane = tilt - lean * down;
+            in_plane / (in_plane.norm_squared() + down * down).sqrt()
         };
-        let [first, second, third, fourth] = WAYS.map(outwards);
-        let (whole, chord) = (first - third, way(c, a));
-        let whole2 = whole.norm_squared();
-        // Other faces' corners mostly lie in other directions.
-        let cross = whole.perp(&chord);
-        if !(cross * cross <= RIM_REL_TOL * whole2 * chord.norm_squared()) {
+        let [first, second, third, fourth] = TILT_DIRECTIONS.map(outwards);
+        let (span, chord) = (first - third, offset(c, a));
+        let span2 = span.norm_squared();
+        // For corners of other faces the chord mostly has another direction.
+        let cross = span.perp(&chord);
+        if !(cross * cross <= RIM_REL_TOL * span2 * chord.norm_squared()) {
             return None;
         }
-        let radius = whole.dot(&chord) / whole2;
+        let radius = span.dot(&chord) / span2;
         let on_rim = |out: Vec2| {
             let from_a = (out - first) * radius;
-            a + Vec3::new(from_a.x, from_a.y, slope.dot(&from_a))
+            a + Vec3::new(from_a.x, from_a.y, gradient.dot(&from_a))
         };
-        let is_there = |way, found: &Vec3| {
-            let off = on_rim(way) - found;
-            let most = RIM_REL_TOL * radius;
-            off.xy().norm_squared() <= most * most && off.z.abs() <= SAME_FACE
+        let is_there = |out, found: &Vec3| {
+            let error = on_rim(out) - found;
+            let tolerance = RIM_REL_TOL * radius;
+            error.xy().norm_squared() <= tolerance * tolerance
+                && error.z.abs() <= SAME_FACE_DROP_TOL
         };
         // False for NaN.
-        let is_rim = radius > 2.0 * self.margin
+        let is_rim = radius > 2.0 * self.vertex_offset
             && is_there(second, b)
             && is_there(third, c)
             && is_there(fourth, d);
-        is_rim.then(|| DIAGONALS.map(|way| on_rim(outwards(way))))
+        is_rim.then(|| DIAGONALS.map(|out| on_rim(outwards(out))))
     }
 }
 
 impl Feature {
-    /// Takes a queried vertex for the prediction of the other tilts that it is farther along.
+    /// Makes a queried vertex the prediction of each direction not yet queried along which it is farther.
     #[inline(always)]
-    fn consider(&mut self, v: &Vec3, scores: &[f64; 4], is_queried: &[bool; 4]) {
+    fn improve_predictions(&mut self, v: &Vec3, scores: &[f64; 4], is_queried: &[bool; 4]) {
         for k in 0..4 {
             if !is_queried[k] && scores[k] > self.scores[k] {
                 (self.scores[k], self.vertices[k], self.cover[k]) = (scores[k], *v, 0.0);
@@ -533,20 +550,23 @@ impl Feature {
 }
 
 impl Fan {
-    /// Eight of a disc, or five corners, and the two that enclose the deepest point; the first one again.
+    /// Largest number of vertices: eight of a disc or five corners, two that enclose the deepest point, and the
+    /// repeated first one.
     pub const CAPACITY: usize = 11;
+    /// The fan without vertices.
     pub const EMPTY: Self = Self {
         vertices: [ZERO; Self::CAPACITY],
         areas: [0.0; Self::CAPACITY],
         len: 0,
     };
 
-    /// Returns the vertex with an index that counts on from the first.
+    /// Returns vertex `i` modulo the number of vertices.
     #[inline(always)]
-    fn around(&self, i: usize) -> Vec3 {
+    fn cyclic_vertex(&self, i: usize) -> Vec3 {
         self.vertices[(i % self.len.max(1)).min(Self::CAPACITY - 1)]
     }
 
+    /// Appends a vertex; a full fan ignores it.
     #[inline(always)]
     pub fn push(&mut self, v: Vec3) {
         if self.len < Self::CAPACITY - 1 {
@@ -555,17 +575,18 @@ impl Fan {
         }
     }
 
+    /// Inserts a vertex at index `i`.
     fn insert(&mut self, i: usize, v: Vec3) {
         self.push(v);
         let mut moved = v;
-        for place in self.vertices.iter_mut().take(self.len).skip(i) {
-            core::mem::swap(place, &mut moved);
+        for vertex in self.vertices.iter_mut().take(self.len).skip(i) {
+            core::mem::swap(vertex, &mut moved);
         }
     }
 
-    /// Closes the fan. Returns whether the deepest point is within.
+    /// Repeats the first vertex and computes the areas. Returns whether the deepest point is inside.
     #[inline(always)]
-    pub fn close(&mut self) -> bool {
+    pub fn compute_areas(&mut self) -> bool {
         let len = self.len.min(Self::CAPACITY - 1);
         self.vertices[len] = self.vertices[0];
         let mut least = f64::INFINITY;
@@ -576,30 +597,30 @@ impl Fan {
         least > 0.0
     }
 
-    /// Takes the deepest point, which is outside, in: the sides that it is beyond go, and a vertex `margin`
-    /// behind it comes in their place.
+    /// Extends the fan to contain the deepest point, which is outside: removes the sides visible from it and adds a
+    /// vertex at `distance` behind it.
     #[cold]
     #[inline(never)]
-    fn enclose(&mut self, margin: f64) {
+    fn extend_to_deepest_point(&mut self, distance: f64) {
         let n = self.len.clamp(1, Self::CAPACITY - 1);
-        let is_seen = |i: usize| !(self.areas[(i % n).min(Self::CAPACITY - 1)] > 0.0);
-        let first = (0..n).find(|i| !is_seen(*i) && is_seen(i + n - 1));
+        let is_visible = |i: usize| !(self.areas[(i % n).min(Self::CAPACITY - 1)] > 0.0);
+        let first = (0..n).find(|i| !is_visible(*i) && is_visible(i + n - 1));
         let first = first.unwrap_or(0);
         let mut fan = Self::EMPTY;
-        let kept = (0..n).find(|k| is_seen(first + k)).unwrap_or(n);
+        let kept = (0..n).find(|k| is_visible(first + k)).unwrap_or(n);
         for k in 0..=kept {
-            fan.push(self.around(first + k));
+            fan.push(self.cyclic_vertex(first + k));
         }
-        let (p, q) = (self.around(first + kept), self.around(first));
-        // Across the bisector of the two, so that it is beyond the deepest point also where both are on one side.
+        let (p, q) = (self.cyclic_vertex(first + kept), self.cyclic_vertex(first));
+        // Opposite to the bisector of the directions to p and q, also if both are on one side.
         let [a, b] = [&p, &q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
         let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
-        let share = margin / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
-        fan.push(Vec3::new(x * share, y * share, 0.0));
-        fan.close();
-        let min_area = MIN_AREA_REL * margin * margin;
+        let scale = distance / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
+        fan.push(Vec3::new(x * scale, y * scale, 0.0));
+        fan.compute_areas();
+        let min_area = MIN_AREA_REL * distance * distance;
         for area in fan.areas.iter_mut().take(fan.len) {
-            // Never 0: areas are divisors.
+            // Never 0, because areas are divisors.
             *area = larger(*area, min_area);
         }
         *self = fan;
@@ -618,10 +639,10 @@ mod tests {
     use super::*;
     use crate::shapes::Random;
 
-    /// A fan beside the deepest point, from a triangle to a sliver that points at it, contains that point
-    /// afterwards: no triangle is turned over.
+    /// Tests that an extended fan contains the deepest point, from a triangle to a sliver that points at it: all
+    /// areas are positive.
     #[test]
-    fn an_enclosed_fan_contains_the_deepest_point() {
+    fn extended_fan_contains_the_deepest_point() {
         let mut r = Random::new(1);
         for round in 0..1000 {
             let width = 10.0_f64.powf(-r.within(0.0, 4.0));
@@ -636,8 +657,8 @@ mod tests {
                 let (x, y) = (x * cos - y * sin, x * sin + y * cos);
                 fan.push(Vec3::new(x, y, 0.0));
             }
-            assert!(!fan.close());
-            fan.enclose(1e-3);
+            assert!(!fan.compute_areas());
+            fan.extend_to_deepest_point(1e-3);
             assert!(
                 fan.areas[..fan.len]
                     .iter()

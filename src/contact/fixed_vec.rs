@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! A short list without heap, for polygons and fans.
+//! A list of limited length without heap memory, for polygons and manifolds.
 
 use core::mem::swap;
 use core::ops::{Deref, DerefMut};
 
-/// At most `CAPACITY` elements, in order; a full one takes no more.
+/// A list of at most `CAPACITY` elements. A full list ignores further elements.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedVec<T, const CAPACITY: usize> {
     all: [T; CAPACITY],
@@ -37,22 +37,23 @@ impl<T, const CAPACITY: usize> DerefMut for FixedVec<T, CAPACITY> {
 }
 
 impl<T: Copy + Default, const CAPACITY: usize> FixedVec<T, CAPACITY> {
+    /// Returns `i` modulo the length, for `i` below twice the length.
     fn index(&self, i: usize) -> usize {
         let i = if i < self.len { i } else { i - self.len };
         i.min(CAPACITY - 1)
     }
 
-    /// Returns the `i`th, counted on from the first after the last.
-    pub fn at(&self, i: usize) -> &T {
+    /// Returns element `i` modulo the length. `i` must be below twice the length.
+    pub fn cyclic(&self, i: usize) -> &T {
         &self.all[self.index(i)]
     }
 
-    /// Returns the same, mutable.
-    pub fn at_mut(&mut self, i: usize) -> &mut T {
+    /// Returns element `i` modulo the length, mutable. `i` must be below twice the length.
+    pub fn cyclic_mut(&mut self, i: usize) -> &mut T {
         &mut self.all[self.index(i)]
     }
 
-    /// Adds one after the last.
+    /// Appends an element.
     pub fn push(&mut self, new: T) {
         if let Some(end) = self.all.get_mut(self.len) {
             *end = new;
@@ -60,7 +61,7 @@ impl<T: Copy + Default, const CAPACITY: usize> FixedVec<T, CAPACITY> {
         }
     }
 
-    /// Inserts one; those from there on move up, the last out of a full one.
+    /// Inserts an element at index `i`. In a full list the last element is lost.
     pub fn insert(&mut self, i: usize, mut new: T) {
         self.len = (self.len + 1).min(CAPACITY);
         let places = self.iter_mut().skip(i);

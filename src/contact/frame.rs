@@ -1,13 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The contact frame: the contact normal and two axes across it.
+//! The contact frame: the contact normal and two axes perpendicular to it.
+//!
+//! The axes are a fixed pair perpendicular to [`POLE`], rotated by the shortest rotation from POLE to the
+//! normal or to its opposite, whichever is closer (Rodrigues' rotation formula). So they rotate no faster
+//! than the normal while it stays on one side of POLE, and are the same for the swapped objects.
 
 use crate::contact::polygon::Vec2;
 use crate::math::{POLE, Vec3};
 use crate::minkowski::support::Fault;
 
-/// Unit, across [`POLE`]: of a box whose axes are the world's no two corners are equally far along it.
+/// Unit, perpendicular to [`POLE`]. Chosen so that no two corners of a box with the world's axes are equally far
+/// along it.
 const AXIS: Vec3 = Vec3::new(37.6 / 61.0, 31.8 / 61.0, -36.0 / 61.0);
 
 /// A frame at a point of a contact.
@@ -17,14 +22,12 @@ pub struct ContactFrame {
     pub origin: Vec3,
     /// The contact normal, unit.
     pub normal: Vec3,
-    /// Unit, across the normal and each other.
+    /// Unit, perpendicular to the normal and to each other.
     pub axes: [Vec3; 2],
 }
 
 impl ContactFrame {
-    /// Returns the frame at `origin` across unit `normal`. Its axes are a fixed pair, turned the shortest way
-    /// from [`POLE`] to the normal or against it, whichever is closer: they turn as little as the normal
-    /// does, and are the same for the objects swapped.
+    /// Returns the frame at `origin` with unit `normal`. The axes are those of the head.
     #[inline(always)]
     pub fn new(normal: &Vec3, origin: &Vec3) -> Self {
         let n = normal * if POLE.dot(normal) < 0.0 { -1.0 } else { 1.0 };
@@ -36,17 +39,17 @@ impl ContactFrame {
         }
     }
 
-    /// Returns the frame at the world's origin across unit `normal` whose first axis is the part of `axes[0]` across
-    /// it; a point is on the same side of that as with `axes`, also where the normal is turned round. None where the
-    /// axes have no plane that is within 60° of it.
+    /// Returns the frame at the world's origin with unit `normal` whose first axis is the part of `axes[0]`
+    /// perpendicular to it, normalised. The second axis keeps the orientation of `axes`, also for the reversed
+    /// normal. None if the normal differs from that of `axes`, or from its opposite, by more than 60°.
     pub fn following(normal: &Vec3, axes: &[Vec3; 2]) -> Option<Self> {
         let along = axes[0].cross(&axes[1]).dot(normal);
-        let across = axes[0] - normal * normal.dot(&axes[0]);
-        let norm = across.norm();
-        // NaN is no axis.
+        let perpendicular = axes[0] - normal * normal.dot(&axes[0]);
+        let norm = perpendicular.norm();
+        // False for NaN.
         let is_same = [along.abs(), norm].iter().all(|x| *x > 0.5 && *x < 2.0);
         is_same.then(|| {
-            let e1 = across / norm;
+            let e1 = perpendicular / norm;
             Self {
                 origin: Vec3::zeros(),
                 normal: *normal,
@@ -60,22 +63,22 @@ impl ContactFrame {
         self.axes[0].cross(&self.axes[1]).dot(&self.normal) > 0.0
     }
 
-    /// Returns the unit direction along the normal (`sign` 1) or against it (-1), tilted by two
-    /// tangents.
+    /// Returns the unit direction of the normal (`sign` 1) or its opposite (-1), tilted. `tilt`: the tangents of
+    /// the angles towards the two axes.
     #[inline(always)]
     pub fn tilted_direction(&self, sign: f64, tilt: Vec2) -> Vec3 {
-        let share = 1.0 / (1.0 + tilt.norm_squared()).sqrt();
-        (self.normal * sign + (self.axes[0] * tilt.x + self.axes[1] * tilt.y)) * share
+        let scale = 1.0 / (1.0 + tilt.norm_squared()).sqrt();
+        (self.normal * sign + (self.axes[0] * tilt.x + self.axes[1] * tilt.y)) * scale
     }
 
-    /// Returns how far a point is from the origin along each axis and along the normal.
+    /// Returns the coordinates of a point along both axes and the normal.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
     pub fn project(&self, p: &Vec3) -> Result<Vec3, Fault> {
         let p = p - self.origin;
-        // NaN ends here too; beyond that squares of squares overflow.
+        // Fails for NaN too. Beyond this limit squares of squares overflow.
         let square = p.norm_squared();
         if !(square * square).is_finite() {
             return Err(Fault::NonFinite);
@@ -84,7 +87,7 @@ impl ContactFrame {
         Ok(Vec3::new(e1.dot(&p), e2.dot(&p), self.normal.dot(&p)))
     }
 
-    /// Returns the point that is so far from the origin along the axes.
+    /// Returns the point with these coordinates along the axes, in the plane of the origin.
     #[inline(always)]
     pub fn point(&self, at: Vec2) -> Vec3 {
         self.origin + self.axes[0] * at.x + self.axes[1] * at.y
@@ -97,7 +100,7 @@ mod tests {
     use crate::shapes::Random;
 
     #[test]
-    fn the_axes_turn_no_faster_than_the_normal() {
+    fn axes_rotate_no_faster_than_the_normal() {
         let mut r = Random::new(6);
         for _ in 0..1000 {
             let n = r.direction();

@@ -1,51 +1,50 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Makes the contact manifold: the region in which the faces of two objects lie over each other, as a few points.
+//! Makes the contact manifold: the region in which the faces of two objects overlap in projection along the normal,
+//! as a few points.
 //!
-//! Steps:
-//! 1. *Faces.* Find the reference and the incident face ([`crate::contact::face`]), convex polygons in the
-//!    contact frame.
-//! 2. *Clipping.* Clip the smaller by the larger one (Sutherland and Hodgman). Each corner of the region has a
-//!    point on either face, whose distance along the normal is the depth there. Segments that cross share a
-//!    point. Nearly parallel ones share a strip as wide as the slop allows of their roundness: sqrt(2 R slop)
-//!    beside its middle a surface of radius R is the slop low.
-//! 3. *Beside each other.* Faces that share nothing have a closest point each. Their middle is the contact where
-//!    they are no farther apart than the slop; else the two are, though one is not over the other.
-//! 4. *Reduction.* The deepest point stays, and those that span the largest area with it; points that had ids
-//!    stay while they span nine tenths of that.
+//! 1. *Faces.* Find the faces of both objects ([`crate::contact::face`]), convex polygons in the contact frame.
+//! 2. *Clipping.* Clip the smaller face by the larger one (Sutherland and Hodgman). Each corner of the region has a
+//!    point on both faces, whose distance along the normal is the depth there. Two segments have a crossing point
+//!    or, if they are nearly parallel, a common part, for which a distance of sqrt(2 R slop) is allowed: there a
+//!    rounded surface of radius R is the slop below its highest line.
+//! 3. *Disjoint faces.* If the faces do not overlap in projection, there is one contact: at the midpoint of their
+//!    closest points if these are within the slop of each other, else with the two closest points themselves.
+//! 4. *Reduction.* Keep the deepest point and those that span the largest area with it. Points with an id are kept
+//!    instead while they span at least nine tenths of that area.
 
 use crate::contact::face::{Face, MAX_CORNERS, faces};
 use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
-use crate::contact::polygon::{Polygon, Vec2, way};
+use crate::contact::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 
 /// One point of a contact manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
-    /// On obj1, metres.
+    /// Point on the face of obj1, metres.
     pub point1: Vec3,
-    /// On obj2: `point1 - depth * normal`, unless the faces share nothing.
+    /// Point on the face of obj2, metres: `point1 - depth * normal` if the faces overlap in projection.
     pub point2: Vec3,
-    /// Depth of the overlap at the contact, metres; negative where the objects are apart.
+    /// Depth at the contact, metres; negative if the objects are apart there.
     pub depth: f64,
-    /// The contact id, not 0, while it moves with either object; 0 without a cache.
+    /// Contact id: the same while the contact moves with either object, never 0; 0 without a cache.
     pub id: u32,
 }
 
-/// Corners of a region at most: each side of one face adds at most one to those of the other.
+/// Largest number of corners of a region: each side of one face adds at most one to the corners of the other.
 pub const MAX_CONTACTS: usize = 2 * MAX_CORNERS;
-/// The sine of the angle up to which segments share a strip: 10°.
+/// Sine of the angle below which segments count as nearly parallel: 10°.
 const MAX_PARALLEL_SINE: f64 = 0.17;
 
-/// A contact manifold: its contacts, the deepest first.
+/// A contact manifold: a list of contacts, the deepest first.
 pub type Manifold = FixedVec<Contact, MAX_CONTACTS>;
 
-/// Returns the contacts of the faces along unit `normal` and against it, at most `max` of them. Takes at most 24
-/// queries of each object, and those of a cache that no longer fits.
+/// Returns at most `max` contacts of the face of obj1 along unit `normal` and of obj2 along its opposite. Takes at
+/// most 24 support calls for each object, plus those for a cache that is out of date.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support function.
@@ -58,12 +57,12 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     max: usize,
 ) -> Result<Manifold, Fault> {
     let mut cache = out_cache.as_deref().copied().unwrap_or_default();
-    let followed = cache.frame(normal);
-    let frame = followed.unwrap_or_else(|| ContactFrame::new(normal, &Vec3::zeros()));
-    let ([one, two], slop) = faces(obj1, obj2, &frame, slop, followed.map(|_| &cache))?;
-    let (mut region, beside) = overlap(&one, &two);
+    let cached_frame = cache.frame(normal);
+    let frame = cached_frame.unwrap_or_else(|| ContactFrame::new(normal, &Vec3::zeros()));
+    let ([one, two], slop) = faces(obj1, obj2, &frame, slop, cached_frame.map(|_| &cache))?;
+    let (mut region, closest) = overlap_of_faces(&one, &two);
     for corner in region.iter_mut() {
-        corner.z = one.corners.low(corner) + two.corners.low(corner);
+        corner.z = one.corners.drop_at(corner) + two.corners.drop_at(corner);
     }
     let ids = cache.ids(
         [one.motion, two.motion],
@@ -75,16 +74,16 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         &ids,
         cache.ids[0],
         max,
-        one.rounding + two.rounding,
+        one.coord_eps + two.coord_eps,
     );
     let mut manifold = Manifold::default();
     let mut stored_ids: FixedVec<(Vec3, u32), MAX_CONTACTS> = FixedVec::default();
     for i in order.iter() {
-        let at = *region.at(*i);
-        let [at1, at2] = beside.unwrap_or([at; 2]);
-        let height1 = one.top - one.corners.low(&at1);
-        let height2 = two.top - two.corners.low(&at2);
-        let mut id = *ids.at(*i);
+        let at = *region.cyclic(*i);
+        let [at1, at2] = closest.unwrap_or([at; 2]);
+        let height1 = one.support_height - one.corners.drop_at(&at1);
+        let height2 = two.support_height - two.corners.drop_at(&at2);
+        let mut id = *ids.cyclic(*i);
         if id == 0 {
             id = cache.new_id();
         }
@@ -107,28 +106,30 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
     Ok(manifold)
 }
 
-/// Returns the indices of at most `max` corners of the region, the deepest first. Those that have ids stay while they
-/// span nine tenths of the largest area; differences of depth by `tie` are rounding.
+/// Returns the indices of at most `max` corners of the region, the deepest first. Keeps corners with ids while they
+/// span at least nine tenths of the largest area. Depths that differ by at most `tie_eps` count as equal.
 fn reduced(
     region: &Polygon<MAX_CONTACTS>,
     ids: &FixedVec<u32, MAX_CONTACTS>,
     first_id: u32,
     max: usize,
-    tie: f64,
+    tie_eps: f64,
 ) -> FixedVec<usize, MAX_CONTACTS> {
-    // Rounding alone makes no corner the deepest.
-    let is_deeper = |i: usize, j: usize| region.at(i).z < region.at(j).z - tie;
+    // A smaller sum of drops is deeper.
+    let is_deeper = |i: usize, j: usize| region.cyclic(i).z < region.cyclic(j).z - tie_eps;
     let mut deepest = (1..region.len()).fold(0, |k, i| if is_deeper(i, k) { i } else { k });
-    let is_first = |i: &usize| first_id != 0 && *ids.at(*i) == first_id && !is_deeper(deepest, *i);
+    let is_first =
+        |i: &usize| first_id != 0 && *ids.cyclic(*i) == first_id && !is_deeper(deepest, *i);
     deepest = (0..region.len()).find(is_first).unwrap_or(deepest);
     let best = region.reduced(deepest, max);
-    if region.len() > max && *ids.at(deepest) != 0 {
-        let kept = (deepest..deepest + region.len()).filter(|i| *ids.at(*i) != 0);
+    if region.len() > max && *ids.cyclic(deepest) != 0 {
+        let kept = (deepest..deepest + region.len()).filter(|i| *ids.cyclic(*i) != 0);
         let kept: FixedVec<usize, MAX_CONTACTS> = kept.collect();
         let size = |indices: &[usize]| {
-            let corners: Polygon<MAX_CONTACTS> = indices.iter().map(|i| *region.at(*i)).collect();
+            let corners: Polygon<MAX_CONTACTS> =
+                indices.iter().map(|i| *region.cyclic(*i)).collect();
             match &*corners {
-                [a, b] => way(a, b).norm(),
+                [a, b] => offset(a, b).norm(),
                 _ => corners.area(),
             }
         };
@@ -139,66 +140,72 @@ fn reduced(
     best
 }
 
-/// Returns the region that two faces share. Where they share nothing within the slop: the point between them, and
-/// the closest point of each.
-fn overlap(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
-    let rounding = larger(one.rounding, two.rounding);
+/// Returns the overlap of two faces in projection. If they do not overlap: the midpoint of their closest points, and,
+/// if these are farther apart than the slop, the two points.
+fn overlap_of_faces(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
+    let coord_eps = larger(one.coord_eps, two.coord_eps);
     let is_swapped = one.corners.area() > two.corners.area();
     let [small, large] = if is_swapped { [two, one] } else { [one, two] };
     let mut region = Polygon::default();
     if large.corners.len() > 2 {
         region = small.corners.iter().copied().collect();
-        region = region.clipped_by(&large.corners, rounding);
+        region = region.clipped_by(&large.corners, coord_eps);
     }
     if !region.is_empty() {
-        return (region.tidied(rounding, rounding), None);
+        return (region.simplified(coord_eps, coord_eps), None);
     }
     let Some((sides, [a, b])) = small.corners.closest_sides(&large.corners) else {
         return (region, None);
     };
-    if large.corners.len() == 2 || one.round + two.round > 0.0 {
-        region = shared_by_segments(&sides, [small.reach(), large.reach()], rounding);
+    if large.corners.len() == 2 || one.rounded_halfwidth + two.rounded_halfwidth > 0.0 {
+        let halfwidths = [small.contact_halfwidth(), large.contact_halfwidth()];
+        region = overlap_of_segments(&sides, halfwidths, coord_eps);
     }
     if !region.is_empty() {
         return (region, None);
     }
     region.push(a.lerp(&b, 0.5));
-    let is_far = way(&a, &b).norm() > lesser(one.slop, two.slop);
+    let is_far = offset(&a, &b).norm() > lesser(one.slop, two.slop);
     let points = if is_swapped { [b, a] } else { [a, b] };
     (region, is_far.then_some(points))
 }
 
-/// Returns the point at which two segments cross. Of nearly parallel ones the ends of what they share, where they are
-/// no farther apart than both reach: on the way from the first to the second by the share of the first one's reach,
-/// because the rounder one reaches farther. These lie between the ends of both segments: across the second one they
-/// may be moved beyond an end of the first. None where nothing is shared.
-fn shared_by_segments(
+/// Returns the crossing point of the segments pq and rs or, if they are nearly parallel, the ends of their common
+/// part; no point if there is none. `halfwidths`: the distance of a contact from each segment, at most.
+///
+/// Nearly parallel segments:
+/// 1. Extend pq at both ends by the slack, the sum of the half-widths. Clip it to the strip of the slack on both
+///    sides of the line rs.
+/// 2. Move each end towards the line rs by the first half-width's fraction of the slack: the more rounded segment
+///    gets the greater distance.
+/// 3. Clip the result at the ends of both segments, because step 2 may have moved it beyond an end of pq.
+fn overlap_of_segments(
     [[p, q], [r, s]]: &[[Vec3; 2]; 2],
-    reach: [f64; 2],
-    rounding: f64,
+    halfwidths: [f64; 2],
+    coord_eps: f64,
 ) -> Polygon<MAX_CONTACTS> {
-    let (u, v, slack) = (way(p, q), way(r, s), reach[0] + reach[1]);
+    let (u, v, slack) = (offset(p, q), offset(r, s), halfwidths[0] + halfwidths[1]);
     let (size, sine) = (u.norm() * v.norm(), u.perp(&v));
     if sine.abs() > MAX_PARALLEL_SINE * size {
-        let [t, k] = [v, u].map(|along| way(p, r).perp(&along) / sine);
+        let [t, k] = [v, u].map(|along| offset(p, r).perp(&along) / sine);
         let is_on_both = [t, k].iter().all(|t| (0.0..=1.0).contains(t));
         return is_on_both.then(|| p.lerp(q, t)).into_iter().collect();
     }
     if !(size > 0.0) {
         return Polygon::default();
     }
-    let longer = slack / u.norm();
+    let extension = slack / u.norm();
     let left = Vec2::new(-v.y, v.x);
-    let ends = Polygon::from_iter([-longer, 1.0 + longer].map(|t| p.lerp(q, t)));
+    let ends = Polygon::from_iter([-extension, 1.0 + extension].map(|t| p.lerp(q, t)));
     let mut ends = ends.clipped(r, &left, slack).clipped(r, &-left, slack);
     for end in ends.iter_mut() {
-        let t = v.dot(&way(r, end)) / v.norm_squared();
-        *end = end.lerp(&r.lerp(s, t), reach[0] / slack);
+        let t = v.dot(&offset(r, end)) / v.norm_squared();
+        *end = end.lerp(&r.lerp(s, t), halfwidths[0] / slack);
     }
     for (from, inwards) in [(p, u), (q, -u), (r, v), (s, -v)] {
-        ends = ends.clipped(from, &inwards, rounding);
+        ends = ends.clipped(from, &inwards, coord_eps);
     }
-    ends.tidied(rounding, 0.0)
+    ends.simplified(coord_eps, 0.0)
 }
 
 #[cfg(test)]
@@ -209,7 +216,8 @@ mod tests {
 
     const SLOP: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-4 };
 
-    /// A square plate's top face at z = 0, and a box on it, turned about z.
+    /// Returns the manifold of a square plate with its top face at z = 0 and a box on it, rotated about z by `angle`
+    /// in opposite directions.
     fn stacked(angle: f64, max: usize) -> Manifold {
         let plate = corners(Vec3::new(1.0, 1.0, 0.5));
         let turn = crate::shapes::Rotation::from_axis_angle(&Vec3::z_axis(), angle);
@@ -220,15 +228,15 @@ mod tests {
     }
 
     #[test]
-    fn an_octagon_and_what_is_left_of_it() {
+    fn octagon_is_reduced_to_the_largest_area() {
         let angle = core::f64::consts::FRAC_PI_8 as f64;
         let whole = stacked(angle, MAX_CONTACTS);
         assert_eq!(whole.len(), 8);
         for c in whole.iter() {
             assert!((c.depth - 0.01).abs() < 64.0 * EPSILON);
             assert!(c.point1.z.abs() < 64.0 * EPSILON);
-            let apart = c.point1 - c.point2 - Vec3::z() * c.depth;
-            assert!(apart.norm() < 64.0 * EPSILON);
+            let error = c.point1 - c.point2 - Vec3::z() * c.depth;
+            assert!(error.norm() < 64.0 * EPSILON);
         }
         // In order around the normal.
         let area = |m: &Manifold| {
@@ -254,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn the_deepest_is_first() {
+    fn deepest_contact_is_first() {
         let mut r = Random::new(4);
         for _ in 0..200 {
             let plate = corners(Vec3::new(2.0, 2.0, 0.5));
@@ -274,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn round_objects_touch_in_points() {
+    fn rounded_objects_have_contacts_at_their_cores() {
         let plate = corners(Vec3::new(1.0, 1.0, 0.5));
         let mut r = Random::new(5);
         for _ in 0..100 {
@@ -283,26 +291,26 @@ mod tests {
             assert_eq!(found.len(), 1);
             let across = found[0].point1 - at;
             assert!(across.xy().norm() < SLOP, "{across}");
-            let way = Vec3::new(0.3, r.within(-0.3, 0.3), 0.0);
-            let rod = capsule(at - way, at + way, 0.4);
+            let half = Vec3::new(0.3, r.within(-0.3, 0.3), 0.0);
+            let rod = capsule(at - half, at + half, 0.4);
             let found = contacts(&hull(&plate), &rod, &Vec3::z(), SLOP, None, 8).unwrap();
             assert_eq!(found.len(), 2);
             for c in found.iter() {
                 let across = (c.point1 - at).xy();
-                let end = (across - way.xy()).norm().min((across + way.xy()).norm());
+                let end = (across - half.xy()).norm().min((across + half.xy()).norm());
                 assert!(end < 2.0 * SLOP, "{end:e}");
             }
         }
     }
 
-    /// Two rods side by side, without a slop: a contact is on both.
+    /// Tests two rods side by side.
     #[test]
-    fn without_a_slop_what_touches_lies_on_both() {
+    fn contacts_lie_on_both_objects_without_slop() {
         let mut r = Random::new(6);
         for round in 0..2000 {
             let [a, b] = [0, 1].map(|_| Vec3::z() * r.within(0.1, 1.0));
             let [p, q] = [0, 1].map(|_| r.within(0.1, 0.5));
-            // So little deep that the least slop of the depth is none.
+            // So shallow that the least slop for the depth is nearly 0.
             let at = Vec3::new((p + q) * (1.0 - 1e-7), 0.0, r.within(-0.2, 0.2));
             let (one, two) = (capsule(-a, a, p), capsule(at - b, at + b, q));
             let found = contacts(&one, &two, &Vec3::x(), 0.0, None, 4).unwrap();

@@ -1,30 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Convex polygons in a contact frame: x and y of a corner are along the axes, z is how far it lies below a support
-//! plane. Segments and points are polygons of two corners and of one.
+//! Convex polygons in a contact frame. x and y of a corner are its coordinates along the axes; z is its *drop*, the
+//! distance below the support plane, metres. Segments and points are polygons of two corners and of one.
 
 use crate::contact::fixed_vec::FixedVec;
 use crate::math::{Vec3, larger, lesser};
 
-/// A vector of the frame.
+/// A vector along the two axes of a contact frame.
 pub type Vec2 = nalgebra::Vector2<f64>;
 
-/// Returns the way from `a` to `b` in the frame.
+/// Returns the displacement from `a` to `b` along the two axes.
 #[inline]
-pub fn way(a: &Vec3, b: &Vec3) -> Vec2 {
+pub fn offset(a: &Vec3, b: &Vec3) -> Vec2 {
     (b - a).xy()
 }
 
-/// Returns how far along the way from `a` (0) to `b` (1) the closest point to `p` is.
+/// Returns the parameter (`a`: 0, `b`: 1) of the point of the segment from `a` to `b` closest to `p`.
 fn segment_parameter(p: &Vec3, a: &Vec3, b: &Vec3) -> f64 {
-    let along = way(a, b);
-    let t = along.dot(&way(a, p)) / along.norm_squared();
-    // NaN, of a side without length, becomes 0.
+    let along = offset(a, b);
+    let t = along.dot(&offset(a, p)) / along.norm_squared();
+    // NaN, for a segment of length 0, becomes 0.
     if t > 0.0 { t.min(1.0) } else { 0.0 }
 }
 
-/// Returns the closest point to `p` of the segment from `a` to `b`.
+/// Returns the point of the segment from `a` to `b` closest to `p`.
 fn closest_on_segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
     a.lerp(b, segment_parameter(p, a, b))
 }
@@ -33,61 +33,62 @@ fn closest_on_segment(p: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
 pub type Polygon<const CAPACITY: usize> = FixedVec<Vec3, CAPACITY>;
 
 impl<const CAPACITY: usize> Polygon<CAPACITY> {
-    /// Returns the sides, from corner to corner; a point has one without length.
+    /// Returns the sides, from corner to corner; a point has one side of length 0.
     pub fn sides(&self) -> impl Iterator<Item = (Vec3, Vec3)> + Clone + '_ {
-        (0..self.len()).map(|i| (*self.at(i), *self.at(i + 1)))
+        (0..self.len()).map(|i| (*self.cyclic(i), *self.cyclic(i + 1)))
     }
 
-    /// Returns the area vector (Newell), twice as long: z is twice the area, and it is across the mean plane.
+    /// Returns twice the area vector (Newell): z is twice the area, and it is perpendicular to the mean plane.
     fn area_vector(&self) -> Vec3 {
-        // About a corner: far from the origin the products would round.
-        let first = self.at(0);
+        // Relative to a corner: far from the origin the products would be less exact.
+        let first = self.cyclic(0);
         let triangles = self.sides().map(|(p, q)| (p - first).cross(&(q - first)));
         triangles.sum()
     }
 
-    /// Returns twice the area.
+    /// Returns twice the area, m².
     pub fn area(&self) -> f64 {
         self.area_vector().z
     }
 
-    /// Returns the polygon without what is no corner: of those closer than `merged` the first stays; those that
-    /// are outside the side of their neighbours by `flat` or less go.
-    pub fn tidied(&self, merged: f64, flat: f64) -> Self {
+    /// Returns the polygon without duplicate corners (no farther than `merged` from an earlier one) and without
+    /// nearly collinear corners (at most `min_height` outside the line of their neighbours).
+    pub fn simplified(&self, merged: f64, min_height: f64) -> Self {
         let mut rest = Self::default();
         for p in self.iter() {
-            if !rest.iter().any(|k| way(k, p).norm() <= merged) {
+            if !rest.iter().any(|k| offset(k, p).norm() <= merged) {
                 rest.push(*p);
             }
         }
-        let is_flat = |rest: &Self, i: usize| {
-            let [p, r, q] = [i + rest.len() - 1, i, i + 1].map(|i| rest.at(i));
+        let is_collinear = |rest: &Self, i: usize| {
+            let [p, r, q] = [i + rest.len() - 1, i, i + 1].map(|i| rest.cyclic(i));
             let t = segment_parameter(r, p, q);
-            let out = way(&p.lerp(q, t), r);
-            out.norm() <= flat || way(p, q).perp(&out) > 0.0 && t > 0.0 && t < 1.0
+            let out = offset(&p.lerp(q, t), r);
+            out.norm() <= min_height || offset(p, q).perp(&out) > 0.0 && t > 0.0 && t < 1.0
         };
-        while let Some(i) = (0..rest.len()).find(|i| rest.len() > 2 && is_flat(&rest, *i)) {
+        while let Some(i) = (0..rest.len()).find(|i| rest.len() > 2 && is_collinear(&rest, *i)) {
             let others = (0..rest.len()).filter(|k| *k != i);
-            rest = others.map(|k| *rest.at(k)).collect();
+            rest = others.map(|k| *rest.cyclic(k)).collect();
         }
         rest
     }
 
-    /// Returns what of it is inside another polygon of three corners or more (Sutherland and Hodgman,
-    /// Reentrant polygon clipping, CACM 17(1), 1974). What is no farther than `slack` outside is moved
-    /// onto it: beyond a sharp corner the lines of two sides, moved by the slack, meet farther away.
+    /// Returns the part inside another polygon of three corners or more (I. Sutherland and G. Hodgman,
+    /// "Reentrant polygon clipping", CACM 17(1), 1974). Each side of the other polygon is first moved outwards by
+    /// `slack`; corners of the result are then moved to the closest point of the other polygon. (At a sharp corner
+    /// the moved sides intersect farther away than the slack.)
     pub fn clipped_by<const OTHER: usize>(&self, other: &Polygon<OTHER>, slack: f64) -> Self {
         let mut rest = *self;
         for (p, q) in other.sides() {
-            let along = way(&p, &q);
+            let along = offset(&p, &q);
             rest = rest.clipped(&p, &Vec2::new(-along.y, along.x), slack);
         }
         rest.iter().map(|corner| other.closest(corner)).collect()
     }
 
-    /// Returns the closest point to `p` of a polygon of three corners or more.
+    /// Returns the point closest to `p` of a polygon of three corners or more.
     fn closest(&self, p: &Vec3) -> Vec3 {
-        let is_inside = |(a, b)| way(&a, &b).perp(&way(&a, p)) >= 0.0;
+        let is_inside = |(a, b)| offset(&a, &b).perp(&offset(&a, p)) >= 0.0;
         if self.sides().all(is_inside) {
             return *p;
         }
@@ -95,42 +96,45 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
         self.closest_sides(&point).map_or(*p, |(_, [at, _])| at)
     }
 
-    /// Returns what of it is no farther than `slack` behind the line through `from` across `inwards`.
+    /// Returns the part on the side of `inwards` of the line through `from` perpendicular to it, and up to `slack`
+    /// on the other side.
     pub fn clipped(&self, from: &Vec3, inwards: &Vec2, slack: f64) -> Self {
-        let room = slack * inwards.norm();
-        let within = |a: &Vec3| inwards.dot(&way(from, a)) + room;
+        let scaled_slack = slack * inwards.norm();
+        let height = |a: &Vec3| inwards.dot(&offset(from, a)) + scaled_slack;
         let mut rest = Self::default();
         for (a, b) in self.sides() {
-            let (at_a, at_b) = (within(&a), within(&b));
-            if at_a >= 0.0 {
+            let (height_a, height_b) = (height(&a), height(&b));
+            if height_a >= 0.0 {
                 rest.push(a);
             }
-            if (at_a >= 0.0) != (at_b >= 0.0) {
-                rest.push(a.lerp(&b, at_a / (at_a - at_b)));
+            if (height_a >= 0.0) != (height_b >= 0.0) {
+                rest.push(a.lerp(&b, height_a / (height_a - height_b)));
             }
         }
         rest
     }
 
-    /// Returns how far below the support plane it is at a place: on its mean plane, or between the ends of a
-    /// segment.
-    pub fn low(&self, at: &Vec3) -> f64 {
-        let lows = || self.iter().map(|c| c.z);
-        let (least, most) = (lows().fold(f64::INFINITY, lesser), lows().fold(0.0, larger));
-        let [a, b] = [self.at(0), self.at(1)];
-        let low = if self.len() == 2 {
+    /// Returns the drop at a position: that of the mean plane, or interpolated between the ends of a segment.
+    pub fn drop_at(&self, at: &Vec3) -> f64 {
+        let drops = || self.iter().map(|c| c.z);
+        let (least, most) = (
+            drops().fold(f64::INFINITY, lesser),
+            drops().fold(0.0, larger),
+        );
+        let [a, b] = [self.cyclic(0), self.cyclic(1)];
+        let drop = if self.len() == 2 {
             a.z + (b.z - a.z) * segment_parameter(at, a, b)
         } else {
-            let across = self.area_vector();
+            let normal = self.area_vector();
             let mean = self.iter().sum::<Vec3>() / self.len() as f64;
-            mean.z - across.xy().dot(&way(&mean, at)) / across.z
+            mean.z - normal.xy().dot(&offset(&mean, at)) / normal.z
         };
-        // The plane of a sliver means nothing beside it. NaN becomes the least.
-        lesser(larger(low, least), most)
+        // Limited to the corners' range, because the plane of a sliver is inaccurate. NaN becomes the least drop.
+        lesser(larger(drop, least), most)
     }
 
-    /// Returns the two sides, of this polygon and of another, that are closest to each other, and the closest
-    /// point of each; of polygons that do not overlap.
+    /// Returns the two sides, one of this polygon and one of another, that are closest to each other, and the
+    /// closest point of each. The polygons must not overlap.
     pub fn closest_sides<const OTHER: usize>(
         &self,
         other: &Polygon<OTHER>,
@@ -138,13 +142,13 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
         let (mut best, mut least) = (None, f64::INFINITY);
         for (a, b) in self.sides() {
             for (c, d) in other.sides() {
-                // One of the points is an end.
+                // At least one of the closest points is an end.
                 let mine = [a, b].map(|p| [p, closest_on_segment(&p, &c, &d)]);
                 let its = [c, d].map(|p| [closest_on_segment(&p, &a, &b), p]);
                 for [p, q] in mine.into_iter().chain(its) {
-                    let apart = way(&p, &q).norm();
-                    if apart < least {
-                        (best, least) = (Some(([[a, b], [c, d]], [p, q])), apart);
+                    let distance = offset(&p, &q).norm();
+                    if distance < least {
+                        (best, least) = (Some(([[a, b], [c, d]], [p, q])), distance);
                     }
                 }
             }
@@ -152,19 +156,19 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
         best
     }
 
-    /// Returns the indices, from the first one on, of at most `most` corners, `first` among them and leading, the
-    /// others in their order: the polygon with the largest area, or of two corners the longest side.
+    /// Returns the indices of at most `most` corners, `first` and then the others in their order, which span the
+    /// largest area; of two corners, the longest distance. (Indices count on beyond the length.)
     ///
-    /// Dynamic programming: the best fan of triangles about `first` that ends at a corner is the best that ends at
-    /// one before, and a triangle.
+    /// Dynamic programming: the largest fan of triangles about `first` that ends at a corner consists of the
+    /// largest fan that ends at an earlier corner and one triangle.
     pub fn reduced(&self, first: usize, most: usize) -> FixedVec<usize, CAPACITY> {
         let all = first..first + self.len();
         if self.len() <= most {
             return all.collect();
         }
-        let spoke = |j: usize| way(self.at(first), self.at(first + j));
-        // Of the fans that end at a corner: the largest area, and the corners, a bit each. A fan of no triangle is a
-        // spoke; each pass adds a triangle.
+        let spoke = |j: usize| offset(self.cyclic(first), self.cyclic(first + j));
+        // For each corner: the largest area of a fan that ends there, and a bit mask of the fan's corners. Initially a
+        // fan without triangles; each pass adds a triangle.
         let length = |j: usize| if most == 2 { spoke(j).norm() } else { 0.0 };
         let mut best: [(f64, u32); CAPACITY] = core::array::from_fn(|j| (length(j), 1 | 1 << j));
         let larger_fan = |a: (f64, u32), b: (f64, u32)| if b.0 > a.0 { b } else { a };
@@ -215,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn tidy_is_without_what_is_no_corner() {
+    fn simplified_removes_duplicate_and_collinear_corners() {
         let points = [
             [0.0, 0.0],
             [0.5, 0.0],
@@ -228,33 +232,33 @@ mod tests {
         for k in 0..points.len() {
             let mut turned = points;
             turned.rotate_left(k);
-            let tidy = polygon(&turned).tidied(1e-6, 1e-6);
-            assert_eq!(tidy.len(), 4);
-            assert!((tidy.area() - 2.0).abs() < 1e-8);
+            let simplified = polygon(&turned).simplified(1e-6, 1e-6);
+            assert_eq!(simplified.len(), 4);
+            assert!((simplified.area() - 2.0).abs() < 1e-8);
             let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
             turned[0] = line[k % 3];
             turned[1] = line[(k + 1) % 3];
             turned[2] = line[(k + 2) % 3];
-            let ends = polygon(turned.get(..3).unwrap()).tidied(1e-6, 1e-6);
+            let ends = polygon(turned.get(..3).unwrap()).simplified(1e-6, 1e-6);
             assert_eq!(ends.len(), 2);
-            let apart = way(&ends[0], &ends[1]);
-            assert_eq!(apart.norm(), (8.0 as f64).sqrt());
+            let side = offset(&ends[0], &ends[1]);
+            assert_eq!(side.norm(), (8.0 as f64).sqrt());
         }
-        assert_eq!(polygon(&[[3.0, 3.0]; 5]).tidied(0.0, 0.0).len(), 1);
-        assert!(Eight::default().tidied(0.0, 0.0).is_empty());
+        assert_eq!(polygon(&[[3.0, 3.0]; 5]).simplified(0.0, 0.0).len(), 1);
+        assert!(Eight::default().simplified(0.0, 0.0).is_empty());
     }
 
     #[test]
-    fn clipped_by_another() {
+    fn clipped_polygon_is_the_common_part() {
         let shared = square(0.0, 0.0, 1.0).clipped_by(&square(1.0, 1.0, 1.0), 0.0);
         assert_eq!(shared.area(), 2.0);
         let segment = polygon(&[[-3.0, 0.5], [0.5, 0.5]]).clipped_by(&square(0.0, 0.0, 1.0), 0.0);
-        let ends = segment.tidied(EPSILON, 0.0);
+        let ends = segment.simplified(EPSILON, 0.0);
         assert_eq!(
             ends.iter().map(point).collect::<Vec<_>>(),
             [[-1.0, 0.5], [0.5, 0.5]]
         );
-        // The slack reaches farther beyond a sharp corner.
+        // The moved sides intersect farther away than the slack at a sharp corner.
         let sliver = polygon(&[[0.0, 0.0], [1.0, -1e-3], [1.0, 1e-3]]);
         let ends = polygon(&[[-1.0, 0.0], [0.5, 0.0]]).clipped_by(&sliver, 1e-6);
         assert!(ends.iter().all(|c| c.x >= 0.0), "{:?}", &*ends);
@@ -266,24 +270,27 @@ mod tests {
     }
 
     #[test]
-    fn low_is_linear_between_corners() {
+    fn drop_is_linear_between_corners() {
         for at in [[0.1, 0.2], [-0.7, 0.9], [1.0, 1.0], [0.0, 0.0]] {
-            let low = square(0.0, 0.0, 1.0).low(&Vec3::new(at[0], at[1], 0.0));
-            assert!((low - (at[0] + 2.0 * at[1])).abs() < 8.0 * EPSILON);
+            let drop = square(0.0, 0.0, 1.0).drop_at(&Vec3::new(at[0], at[1], 0.0));
+            assert!((drop - (at[0] + 2.0 * at[1])).abs() < 8.0 * EPSILON);
         }
         assert!(
-            (polygon(&[[0.0, 0.0], [1.0, 0.0]]).low(&Vec3::new(0.25, 0.3, 0.0)) - 0.25).abs()
+            (polygon(&[[0.0, 0.0], [1.0, 0.0]]).drop_at(&Vec3::new(0.25, 0.3, 0.0)) - 0.25).abs()
                 < EPSILON
         );
-        assert_eq!(polygon(&[[1.0, 1.0]]).low(&Vec3::new(5.0, 5.0, 0.0)), 3.0);
+        assert_eq!(
+            polygon(&[[1.0, 1.0]]).drop_at(&Vec3::new(5.0, 5.0, 0.0)),
+            3.0
+        );
     }
 
     #[test]
-    fn closest_sides_of_two() {
+    fn closest_sides_of_two_polygons() {
         let near = square(0.0, 0.0, 1.0)
             .closest_sides(&square(4.0, 0.5, 1.0))
             .unwrap();
-        assert_eq!(way(&near.1[0], &near.1[1]).norm(), 2.0);
+        assert_eq!(offset(&near.1[0], &near.1[1]).norm(), 2.0);
         let tip = polygon(&[[0.0, 3.0]]);
         assert_eq!(
             square(0.0, 0.0, 1.0)
@@ -294,13 +301,13 @@ mod tests {
             [[0.0, 1.0], [0.0, 3.0]]
         );
         let [p, q] = tip.closest_sides(&polygon(&[[4.0, 0.0]])).unwrap().1;
-        assert_eq!(way(&p, &q).norm(), 5.0);
+        assert_eq!(offset(&p, &q).norm(), 5.0);
         assert!(Eight::default().closest_sides(&tip).is_none());
     }
 
-    /// Against all subsets.
+    /// Compares with all subsets.
     #[test]
-    fn reduced_to_the_largest_area() {
+    fn reduced_polygon_has_the_largest_area() {
         let points: [Point2; 7] = [
             [0.0, 0.0],
             [2.0, -0.5],
@@ -314,7 +321,7 @@ mod tests {
         for first in 0..7 {
             for most in 1..=7 {
                 let indices = whole.reduced(first, most);
-                let rest: Eight = indices.iter().map(|i| *whole.at(*i)).collect();
+                let rest: Eight = indices.iter().map(|i| *whole.cyclic(*i)).collect();
                 assert_eq!(rest.len(), most);
                 assert_eq!(point(&rest[0]), points[first]);
                 let mut best: f64 = 0.0;
@@ -333,9 +340,9 @@ mod tests {
                 );
             }
             let two = whole.reduced(first, 2);
-            let far = way(whole.at(two[0]), whole.at(two[1])).norm();
-            let ways = whole.iter().map(|p| way(&whole[first], p).norm());
-            let longest = ways.fold(0.0, f64::max);
+            let far = offset(whole.cyclic(two[0]), whole.cyclic(two[1])).norm();
+            let distances = whole.iter().map(|p| offset(&whole[first], p).norm());
+            let longest = distances.fold(0.0, f64::max);
             assert_eq!(far, longest);
         }
     }
