@@ -143,17 +143,20 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
     }
     let slack = 2.0 * query.vertex_offset;
     let [a, b, c, d] = &face;
-    let (x, y, u, w) = (c.x - a.x, c.y - a.y, d.x - b.x, d.y - b.y);
+    let (first, second) = (offset(a, c), offset(b, d));
     // A quadrilateral without area contains nothing. Negated for NaN.
-    if !(x * w - y * u > slack * (x.abs() + y.abs() + u.abs() + w.abs())) {
+    let sum = first.x.abs() + first.y.abs() + second.x.abs() + second.y.abs();
+    if !(first.perp(&second) > slack * sum) {
         return false;
     }
     (0..4).all(|i| {
-        let (p, q) = (&face[i % 4], &face[(i + 1) % 4]);
-        let (x, y) = (q.x - p.x, q.y - p.y);
-        let least = x * p.y - y * p.x - slack * (x.abs() + y.abs());
+        let corner = &face[i % 4];
+        let side = offset(corner, &face[(i + 1) % 4]);
+        let least = side.perp(&corner.xy()) - slack * (side.x.abs() + side.y.abs());
         // The other object's outline is mirrored.
-        outline.iter().all(|o| y * o.x - x * o.y >= least)
+        outline
+            .iter()
+            .all(|end| side.y * end.x - side.x * end.y >= least)
     })
 }
 

@@ -123,7 +123,7 @@ pub struct ccd_pt_vertex_t {
 pub struct ccd_pt_edge_t {
     pub el: ccd_pt_el_t,
     pub vertex: [*mut ccd_pt_vertex_t; 2],
-    /// Adjacent faces, filled from the front; NULL where there is none.
+    /// Adjacent faces, filled from the front; NULL if there is none.
     pub faces: [*mut ccd_pt_face_t; 2],
     /// Links in the edge lists of the two vertices.
     pub vertex_list: [ccd_list_t; 2],

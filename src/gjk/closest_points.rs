@@ -13,7 +13,7 @@
 //!    polytopes rounded by a sphere.
 //! 4. The queried direction is limited to [`MAX_TILT`] from the normal of the best plane found so far: a
 //!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
-//! 5. Stop if the bounds meet, if the origin is in the simplex, or if the distance is proven to be larger
+//! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the distance is proven to be larger
 //!    than `max_distance`.
 //!
 //! Outputs, valid for every [`GjkEnd`]: `lower` is a bound along `normal`; `upper` is the distance
@@ -343,7 +343,7 @@ mod tests {
         }
     }
 
-    /// Tests two polygons as thin as rounding, almost in one plane: if the bounds are reported to meet, the distance
+    /// Tests two polygons as thin as rounding, almost in one plane: if the goal is reported as met, the distance
     /// of the points is within the bounds.
     #[test]
     fn touching_plates_have_points_within_the_bounds() {

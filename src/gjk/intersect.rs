@@ -501,7 +501,7 @@ mod tests {
                     v1: Vec3::zeros(),
                     v2: at,
                 };
-                // The upper box on the line of the centers, and beside it; below: balls.
+                // Boxes exactly above each other, and offset sideways; below: balls.
                 let aside = turn * Vec3::x() * (0.3 * size.x);
                 for by in [Vec3::zeros(), aside] {
                     let at = up * (2.0 * size.z + gap) + by;
