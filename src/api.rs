@@ -117,8 +117,8 @@ fn validate_direction(dir: [Real; 3]) -> Result<Vec3, Error> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Want {
     /// True to request the contact position. It costs 2 to 4 support points, at most 8 for a face of
-    /// more than four corners, none if a state shows that nothing has moved. Evaluates the shapes
-    /// separately.
+    /// more than four corners, none if a state shows that nothing has moved. May evaluate one shape
+    /// without the other.
     pub pos: bool,
     /// True to request the witness points, at no cost.
     pub points: bool,
@@ -152,7 +152,8 @@ pub struct Settings {
     /// of the Minkowski difference.
     pub tolerance: Real,
     /// Limit on the support points of a query after its first tetrahedron, all stages together. The
-    /// library's own limit is 380, and no query takes more than 400 support points.
+    /// library's own limits are 160, 320 for proofs and 380 for distances, and no query takes more
+    /// than 400 support points.
     pub max_iterations: u64,
     /// The requested results.
     pub want: Want,
@@ -223,7 +224,7 @@ pub struct Penetration {
     /// Penetration depth, metres, >= 0: moving the second shape by `depth * dir` separates the two.
     pub depth: Real,
     /// Lower bound of the globally least depth (in [`penetration_along`]: of the depth along its
-    /// direction), metres; 0 if there is none. Proven if the centers lie in their shapes;
+    /// direction), metres; 0 if there is none. Proven if the centers lie in their shapes; only
     /// [`penetration_proven`] does not rely on them.
     pub depth_lower: Real,
     /// Penetration direction, unit: the second shape moves along it.
@@ -427,7 +428,7 @@ query!(
     /// the two; with [`Penetration::limit`] it is a sound upper bound.
     ///
     /// With a state, a pair that stays apart costs one support point, and an overlap fewer than a cold
-    /// start. The depth and `depth_lower` rely on the centers. Allocates nothing.
+    /// start. The overlap and `depth_lower` rely on the centers. Allocates nothing.
     ///
     /// Returns `None` if the shapes are apart or touch within rounding.
     ///
