@@ -228,7 +228,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
             solver.query.evaluate(set, dir)?;
         }
         status = solver.run(set, center, &request.ray, false, &mut arena)?;
-        if is_inconsistent {
+        // Also if only the second run has noticed a contradiction.
+        if solver.query.is_inconsistent {
             solver.hit.depth_lower = 0.0;
             status = Status::InconsistentSupport;
         }

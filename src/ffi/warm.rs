@@ -29,7 +29,7 @@
 //! coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D. A call reads only
 //! the tolerance that it names. max_iterations limits the support points of a query after the first
 //! tetrahedron, all stages together; the library's own limits are 160, 320 for proofs and
-//! 380 for distances, and no query takes more than 400 support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
+//! 380 for distances; with all stages no query was seen to take more than 400 support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
 //! re-entrant and keep no data except the caller's state.
 //!
 //! All statements assume convex objects and support functions that return a farthest point. If points
