@@ -6,20 +6,19 @@
 use std::ffi::c_void;
 use std::path::PathBuf;
 
-use ccd::internals::ffi::{ccd_support_fn, ccd_vec3_t};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::details::contact_support_map_support_map_with_params;
 use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
 use parry3d_f64::shape::SupportMap;
 
-use crate::measuring::libraries::{Libraries, function};
+use crate::measuring::libraries::{Callbacks, Libraries, function};
 use crate::measuring::methods::{Answer, Depth, Method, Start, depth_call, run_call};
 use crate::measuring::scene::Pair;
 
 /// A shape of the callbacks as parry's trait, in world coordinates.
 struct Convex {
     shape: *const c_void,
-    support: ccd_support_fn,
+    callbacks: Callbacks,
 }
 
 impl SupportMap for Convex {
@@ -31,17 +30,14 @@ impl SupportMap for Convex {
 
     #[inline]
     fn local_support_point_toward(&self, dir: Vector) -> Vector {
-        let (dir, mut out) = (ccd_vec3_t { v: dir.into() }, ccd_vec3_t::default());
-        // SAFETY: a shape of a scene, a unit direction and room for a point.
-        unsafe { (self.support)(self.shape, &dir, &mut out) };
-        Vector::from(out.v)
+        Vector::from(self.callbacks.support_point(self.shape, dir.into()))
     }
 }
 
 /// Returns parry3d's GJK and EPA from the centre difference.
 fn parry(libraries: &Libraries) -> Method<'_> {
     let query = |pair: &Pair| {
-        let convex = |shape: *mut c_void| Convex { shape, support: libraries.callbacks.support };
+        let convex = |shape: *mut c_void| Convex { shape, callbacks: libraries.callbacks };
         let result = contact_support_map_support_map_with_params(
             &Pose::IDENTITY,
             &convex(pair.a),

@@ -45,10 +45,7 @@ fn table(rows: &[Row]) -> String {
 }
 
 pub fn draw(page: &Page, rows: &[Row]) {
-    if rows.is_empty() {
-        return;
-    }
-    let contacts = rows.first().map_or(0, |r| r.overlaps);
+    let Some(contacts) = rows.first().map(|r| r.overlaps) else { return };
     let notes = [
         format!("{contacts} recorded contacts of an ODE pile; pale: support functions, full: the solver."),
         "Wrong: overlap missed, depth off by more than 1 %, or a direction that is more than 1 % deeper.".to_owned(),

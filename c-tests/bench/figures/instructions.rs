@@ -54,11 +54,8 @@ fn counted(libraries: &Libraries, options: &Options, is_counting: bool) -> Vec<R
         let shown = if options.set.is_some() { list } else { &list[..num_on_the_page] };
         runner.rows(&scene, select(libraries, shown))
     };
-    let rows: Vec<Row> = match &options.set {
-        Some(set) => [&**set].into_iter().flat_map(rows).collect(),
-        None => ON_THE_PAGE.into_iter().flat_map(rows).collect(),
-    };
-    rows.into_iter().filter(|row| row.solver.is_some()).collect()
+    let sets = options.set.as_deref().map_or(ON_THE_PAGE.to_vec(), |set| vec![set]);
+    sets.into_iter().flat_map(rows).filter(|row| row.solver.is_some()).collect()
 }
 
 pub fn run(options: &Options, is_counting: bool) {

@@ -47,7 +47,7 @@ pub fn count(libraries: &Libraries, scene: &Scene, method: &mut Method, every: u
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.begin)() };
     for pair in scene.pairs.iter().step_by(every) {
-        std::hint::black_box(method.query(pair));
+        std::hint::black_box((method.query)(pair));
     }
     // SAFETY: does nothing.
     unsafe { (libraries.callbacks.end)() };

@@ -12,7 +12,7 @@ use std::ffi::{CStr, c_char, c_int, c_ulong, c_void};
 use std::path::Path;
 use std::process::Command;
 
-use ccd::internals::ffi::{CCD_WARM_REALS, ccd_center_fn, ccd_support_fn, ccd_t, ccd_warm_t};
+use ccd::internals::ffi::{CCD_WARM_REALS, ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t, ccd_warm_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 use nalgebra::{Matrix3, Vector3};
 
@@ -28,13 +28,24 @@ pub const COLD: ccd_warm_t = ccd_warm_t { reals: [0.0; CCD_WARM_REALS], words: [
 /// The functions of `callbacks.c`.
 #[derive(Clone, Copy)]
 pub struct Callbacks {
-    pub support: ccd_support_fn,
+    support: ccd_support_fn,
     center: ccd_center_fn,
     pub calls: unsafe extern "C-unwind" fn(*const c_void) -> c_ulong,
     pose: unsafe extern "C-unwind" fn(*const c_void, *mut f64, *mut f64),
     pub scene: unsafe extern "C-unwind" fn(*const c_char, *mut *mut Pair) -> usize,
     pub begin: unsafe extern "C-unwind" fn(),
     pub end: unsafe extern "C-unwind" fn(),
+}
+
+impl Callbacks {
+    /// Returns the point of a shape farthest along a unit direction.
+    #[inline]
+    pub fn support_point(&self, shape: *const c_void, dir: [f64; 3]) -> [f64; 3] {
+        let (dir, mut out) = (ccd_vec3_t { v: dir }, ccd_vec3_t::default());
+        // SAFETY: a shape of a scene, a direction and room for a point.
+        unsafe { (self.support)(shape, &dir, &mut out) };
+        out.v
+    }
 }
 
 /// Everything opened; lives as long as the process.

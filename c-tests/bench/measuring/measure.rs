@@ -9,7 +9,6 @@ use std::ffi::{c_int, c_long};
 use std::hint::black_box;
 use std::vec;
 
-use ccd::internals::ffi::ccd_vec3_t;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -134,14 +133,9 @@ impl<'a> Runner<'a> {
 }
 
 /// Returns the support value of the Minkowski difference along `dir`.
-fn support_value(libraries: &Libraries, pair: &Pair, dir: &Vector3<f64>) -> f64 {
-    let support = |shape, d: Vector3<f64>| {
-        let (d, mut v) = (ccd_vec3_t::from(d), ccd_vec3_t::default());
-        // SAFETY: a shape of the scene, a direction and room for a point.
-        unsafe { (libraries.callbacks.support)(shape, &d, &mut v) };
-        Vector3::from(v.v)
-    };
-    dir.dot(&(support(pair.a.cast_const(), *dir) - support(pair.b.cast_const(), -dir)))
+fn support_value(libraries: &Libraries, pair: &Pair, dir: Vector3<f64>) -> f64 {
+    let support = |shape, dir: Vector3<f64>| Vector3::from(libraries.callbacks.support_point(shape, dir.into()));
+    dir.dot(&(support(pair.a, dir) - support(pair.b, -dir)))
 }
 
 /// Returns the mean; 0 of none.
@@ -184,7 +178,7 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
     let (mut errors, mut near, mut num_calls) = (vec![], vec![], 0);
     for pair in &scene.pairs {
         let before = calls(pair);
-        let answer = method.query(pair);
+        let answer = (method.query)(pair);
         let after = calls(pair);
         if method.is_warm() && pair.frame == 0 {
             continue;
@@ -207,7 +201,7 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         };
         let error = (depth - truth).abs();
         errors.push(error);
-        row.unsound = larger(row.unsound, support_value(libraries, pair, &dir.into()) - depth);
+        row.unsound = larger(row.unsound, support_value(libraries, pair, dir.into()) - depth);
         if error <= 1e-3 {
             near.push(error);
         }
@@ -217,7 +211,7 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         let faults = [
             is_deep(depth),
             depth < 0.99 * truth - tolerance,
-            is_deep(support_value(libraries, pair, &Vector3::from(dir).normalize())),
+            is_deep(support_value(libraries, pair, Vector3::from(dir).normalize())),
         ];
         row.deep += f64::from(faults[0]);
         row.shallow += f64::from(faults[1]);
@@ -283,9 +277,9 @@ fn pass(scene: &Scene, method: &mut Method) -> Vec<(f64, usize)> {
     };
     let time = |chunk: &[Pair]| {
         let (untimed, timed) = chunk.split_at(num_untimed);
-        untimed.iter().for_each(|pair| _ = black_box(method.query(pair)));
+        untimed.iter().for_each(|pair| _ = black_box((method.query)(pair)));
         let begin = thread_nanoseconds();
-        timed.iter().for_each(|pair| _ = black_box(method.query(pair)));
+        timed.iter().for_each(|pair| _ = black_box((method.query)(pair)));
         (thread_nanoseconds() - begin, timed.len())
     };
     chunks.into_iter().map(time).collect()

@@ -152,7 +152,7 @@ pub struct Method<'a> {
     pub start: Start,
     /// None if it is built in.
     pub tolerance: Option<f64>,
-    query: Query<'a>,
+    pub query: Query<'a>,
 }
 
 impl<'a> Method<'a> {
@@ -162,11 +162,6 @@ impl<'a> Method<'a> {
 
     pub fn is_warm(&self) -> bool {
         self.start == Start::Warm
-    }
-
-    #[inline]
-    pub fn query(&mut self, pair: &Pair) -> Option<Answer> {
-        (self.query)(pair)
     }
 }
 
@@ -263,17 +258,10 @@ pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t
 /// Runs the paper's algorithms, which match the published implementation but return the portal's normal.
 fn gao(libraries: &Libraries, until: Until, start: Start, tolerance: f64) -> Query<'static> {
     let settings = Settings { tolerance, max_iterations: 10_000 };
-    let support = libraries.callbacks.support;
+    let callbacks = libraries.callbacks;
     let mut last = None;
     Box::new(move |pair| {
-        let object = |shape: *mut c_void| {
-            move |dir: &Vec3| {
-                let (dir, mut out) = (ccd_vec3_t::from(*dir), ccd_vec3_t::default());
-                // SAFETY: a shape of the scene, a direction and room for a point.
-                unsafe { support(shape, &dir, &mut out) };
-                Vec3::from(out)
-            }
-        };
+        let object = |shape| move |dir: &Vec3| Vec3::from(callbacks.support_point(shape, (*dir).into()));
         let md = MinkowskiDifference::new(object(pair.a), object(pair.b));
         let memory = if pair.frame == 0 { None } else { last };
         let from = start.guess(&pair.truth).map(Vec3::from).or(memory);
