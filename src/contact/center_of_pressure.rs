@@ -214,16 +214,20 @@ impl FanRay {
     }
 }
 
-/// The integrals of the local depth.
+/// The sums of the integrals of the local depth δ, in units of d, times 24.
 struct PressureSum {
+    /// The integral of δ.
     volume: f64,
+    /// The integral of δ r.
     moment: Vec2,
     /// Width of a flank at the local depth d: d / s, metres.
     flank_width: f64,
+    /// Square of the least length of a side, m².
     min_side2: f64,
 }
 
 impl PressureSum {
+    /// Makes empty sums.
     fn new(depth: f64, vertex_offset: f64) -> Self {
         Self {
             volume: 0.0,
@@ -233,7 +237,8 @@ impl PressureSum {
         }
     }
 
-    /// Adds the triangle from the deepest point to a side of the outline, and its flank.
+    /// Adds the triangle from the deepest point to a side of the outline, and its flank. The formulas are those of the
+    /// head; `k` is its k'.
     #[inline(always)]
     fn add(&mut self, v: &Vec3, w: &Vec3) {
         let length2 = offset(v, w).norm_squared();
@@ -244,11 +249,11 @@ impl PressureSum {
         let (a, b) = (v.z, w.z);
         let area = area2(v, w);
         let k = self.flank_width * length;
-        let both = area + (area + k * (a + b)) * (a + b);
-        let one = both + (area + 2.0 * k * a) * a;
-        let two = both + (area + 2.0 * k * b) * b;
-        self.volume += 4.0 * (both - k * a * b);
-        self.moment += v.xy() * one + w.xy() * two;
+        let common = area + (area + k * (a + b)) * (a + b);
+        let weight_v = common + (area + 2.0 * k * a) * a;
+        let weight_w = common + (area + 2.0 * k * b) * b;
+        self.volume += 4.0 * (common - k * a * b);
+        self.moment += v.xy() * weight_v + w.xy() * weight_w;
     }
 
     /// Adds a fan on a larger plane. `outline`: the outline points towards its vertices.
@@ -289,7 +294,7 @@ impl PressureSum {
         for _ in 0..one.len + two.len {
             let nexts = [vertex(0, at[0] + 1), vertex(1, at[1] + 1)];
             let turn = area2(nexts[0], nexts[1]);
-            // The fan whose vertex comes next.
+            // The fan with the next vertex, counterclockwise.
             let own = usize::from(!(turn > 0.0));
             let other = 1 - own;
             let v = nexts[own];

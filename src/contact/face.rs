@@ -182,6 +182,7 @@ struct FaceSearch<'a, S> {
 }
 
 impl<'a, S: SupportMap> FaceSearch<'a, S> {
+    /// Makes a search that has queried nothing.
     fn new(object: &'a S, frame: &'a ContactFrame, sign: f64) -> Self {
         FaceSearch {
             object,
@@ -481,9 +482,9 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         for (new, [tilt, _, offset]) in self.face.samples.iter_mut().zip(cached.samples()) {
             let drop = 0.5 * offset.dot(&tilt);
             new.radius = offset.norm() / tilt.norm();
-            let offset = motion.turn * offset;
+            let offset = motion.rotation * offset;
             new.corner += Vec3::new(offset.x, offset.y, drop);
-            new.tilt = motion.turn * tilt;
+            new.tilt = motion.rotation * tilt;
         }
         if cached.is_complete != 0.0 {
             let heights = self.face.samples.iter().map(|s| -s.corner.z);

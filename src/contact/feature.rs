@@ -83,6 +83,7 @@ const TILT_DIRECTIONS: [Vec2; 4] = [
     Vec2::new(-1.0, 0.0),
     Vec2::new(0.0, -1.0),
 ];
+/// The coordinate of a diagonal unit vector.
 const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
 /// The directions between them.
 const DIAGONALS: [Vec2; 4] = [
@@ -233,10 +234,8 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     fn query(&self, object: usize, tilt: Vec2) -> Result<Vec3, Fault> {
         let dir = self.frame.tilted_direction(1.0, tilt);
         let side = if object == 0 { 1.0 } else { -1.0 };
-        let p = self
-            .frame
-            .project(&self.md.support_of_object(object, &dir))?
-            * side;
+        let p = self.md.support_of_object(object, &dir);
+        let p = self.frame.project(&p)? * side;
         let drop = larger((self.half_gap - p.z) / self.depth, 0.0);
         Ok(Vec3::new(p.x, p.y, drop))
     }

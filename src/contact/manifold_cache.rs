@@ -52,8 +52,10 @@ pub struct CachedFace {
 #[derive(Clone, Copy)]
 pub struct Motion {
     /// The rotation about the normal.
-    pub turn: UnitComplex<f64>,
+    pub rotation: UnitComplex<f64>,
+    /// The old position of one vertex.
     from: Vec2,
+    /// Its new position.
     to: Vec2,
 }
 
@@ -139,20 +141,22 @@ impl CachedFace {
         let longer = |a: (Vec2, Vec2), b: (Vec2, Vec2)| if b.0.norm() > a.0.norm() { b } else { a };
         let (a, b) = spokes().fold((Vec2::zeros(), Vec2::zeros()), longer);
         let slack = slack + F32_REL_TOL * a.norm();
-        let mut turn = UnitComplex::identity();
-        // A face no longer than its rounding has no measurable turn.
+        let mut rotation = UnitComplex::identity();
+        // A face not much larger than the slack has no measurable rotation.
         if a.norm() > 64.0 * slack {
-            turn = UnitComplex::rotation_between(&a, &b);
+            rotation = UnitComplex::rotation_between(&a, &b);
         }
-        let is_one = |(a, b): (Vec2, Vec2)| (turn * a - b).norm() <= slack;
-        spokes().all(is_one).then_some(Motion { turn, from, to })
+        let is_one = |(a, b): (Vec2, Vec2)| (rotation * a - b).norm() <= slack;
+        spokes()
+            .all(is_one)
+            .then_some(Motion { rotation, from, to })
     }
 }
 
 impl Motion {
     /// Returns the new position of a point that moves with the face.
     fn apply(&self, at: Vec2) -> Vec2 {
-        self.to + self.turn * (at - self.from)
+        self.to + self.rotation * (at - self.from)
     }
 }
 

@@ -38,6 +38,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     unsafe { write(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
 }
 
+/// Reads a vector of the caller.
 #[inline(always)]
 unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
     // SAFETY: [inputs].

@@ -107,7 +107,7 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
         let is_met = cores.upper <= larger(contact_eps, wanted.settings.tolerance);
         cores.end = if is_met { GjkEnd::Met } else { GjkEnd::Limit };
     }
-    let distance = distance_apart(&cores, contact_eps, wanted);
+    let distance = separated_distance(&cores, contact_eps, wanted);
     *state = WarmStart::separated(cores.normal, larger(distance.lower, 0.0), radius);
     Ok(distance)
 }
@@ -156,7 +156,7 @@ fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
 }
 
 /// Returns the signed distance of objects with separated cores. `contact_eps`: metres.
-fn distance_apart(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) -> Distance {
+fn separated_distance(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) -> Distance {
     let margin = wanted.margin();
     // The witness points are on the line through the closest points of the cores; if the cores touch, that
     // line is rounding error, and the normal replaces it.
