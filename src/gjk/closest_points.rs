@@ -13,8 +13,8 @@
 //!    polytopes rounded by a sphere.
 //! 4. The queried direction is limited to [`MAX_TILT`] from the normal of the best plane found so far: a
 //!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
-//! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the distance is proven to be larger
-//!    than `max_distance`.
+//! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the
+//!    distance is proven to be larger than `max_distance`.
 //!
 //! Outputs, valid for every [`GjkEnd`]: `lower` is a bound along `normal`; `upper` is the distance
 //! of the two points. [`GjkEnd::Inside`]: the origin is in the simplex, and the points coincide.
