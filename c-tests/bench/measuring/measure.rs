@@ -149,7 +149,7 @@ fn larger(a: f64, b: f64) -> f64 {
 }
 
 /// Returns the median; 0 of none.
-pub fn median(mut values: Vec<f64>) -> f64 {
+fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     let value = |k: usize| values.get(k).copied().unwrap_or_default();
     let half = values.len() / 2;
@@ -174,7 +174,7 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         ours: method.entry.is_ours(),
         ..Row::default()
     };
-    let tolerance = 2.0 * method.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    let margin = 2.0 * method.tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let (mut errors, mut near, mut num_calls) = (vec![], vec![], 0);
     for pair in &scene.pairs {
         let before = calls(pair);
@@ -207,10 +207,10 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         }
         // NaN counts as too deep.
         row.nonminimal += f64::from(depth - truth > 1e-3 || depth.is_nan());
-        let is_deep = |depth: f64| depth > 1.01 * truth + tolerance || depth.is_nan();
+        let is_deep = |depth: f64| depth > 1.01 * truth + margin || depth.is_nan();
         let faults = [
             is_deep(depth),
-            depth < 0.99 * truth - tolerance,
+            depth < 0.99 * truth - margin,
             is_deep(support_value(libraries, pair, Vector3::from(dir).normalize())),
         ];
         row.deep += f64::from(faults[0]);
