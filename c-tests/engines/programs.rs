@@ -169,16 +169,16 @@ pub fn on_both(program: Program) -> [Method; 2] {
 /// Returns a program on libccd and on this library under compare.sh, which judges one query in `every`.
 pub fn compared(program: Program, every: &str) -> [Method; 2] {
     let program = program.flag("-rdynamic").link_system().build().quiet();
-    let theirs = program.compared(&["--no-times", "--every", every]);
-    let ours = theirs.with_options(&["--swap"]);
+    let options = ["--no-times", "--every", every, "--swap"];
+    let [theirs, ours] = [&options[..3], &options].map(|options| program.compared(options));
     [Method::libccd("libccd", theirs), Method::ours("this library", ours)]
 }
 
 /// Returns the same with every query judged on this library, and none on libccd.
 pub fn ours_judged(program: Program) -> [Method; 2] {
-    let [mut theirs, ours] = compared(program, "1");
-    theirs.program = theirs.program.uncompared();
-    [theirs, ours]
+    let [_, ours] = compared(program.clone(), "1");
+    let theirs = program.flag("-rdynamic").link_system().build().quiet();
+    [Method::libccd("libccd", theirs), ours]
 }
 
 /// Returns the screen that compare.sh prints about a program.
@@ -219,8 +219,8 @@ pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
         on_both(program())
     } else {
         let both = program().link_ours_renamed_and_system().build().quiet();
-        let theirs = both.compared(&["--every", "1", "--no-times"]);
-        let ours = theirs.with_options(&["--swap"]);
+        let options = ["--every", "1", "--no-times", "--swap"];
+        let [theirs, ours] = [&options[..3], &options].map(|options| both.compared(options));
         [Method::libccd("", theirs), Method::ours("", ours)]
     };
     let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE").link_ours_shared().build().quiet();

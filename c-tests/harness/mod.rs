@@ -524,17 +524,6 @@ impl Executable {
         compared.library_path = None;
         compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
         compared.before.extend(["--fields".into(), "--library".into(), library.into()]);
-        compared.with_options(options)
-    }
-
-    /// Returns the same program without compare.sh.
-    pub fn uncompared(&self) -> Executable {
-        Executable { before: Vec::new(), ..self.clone() }
-    }
-
-    /// Adds options of compare.sh.
-    pub fn with_options(&self, options: &[&str]) -> Executable {
-        let mut compared = self.clone();
         compared.before.extend(options.iter().map(OsString::from));
         compared
     }
