@@ -258,7 +258,7 @@ pub fn python_wheel() -> Result<[Method; 2], String> {
         let mut pip = Command::new(&python);
         try_to(pip.args(["-m", "pip", "install", "--only-binary=:all:", "python-fcl"]))?;
     }
-    let python = Executable::made_elsewhere("python-fcl", python);
+    let python = Executable::from_path("python-fcl", python);
     let script = root().join("c-tests/engines/wheel.py");
     let theirs = Method::libccd("the wheel's libccd", python.clone()).first(&script);
     let ours = Method::ours("this library", python).first(&script);

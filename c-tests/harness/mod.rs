@@ -67,7 +67,7 @@ impl Precision {
 
 /// A release build of the library, ready to link against.
 #[derive(Debug)]
-pub struct Built {
+pub struct LibraryBuild {
     /// Folder of libccd.so, libccd.so.2, libccd.a and librs_ccd.a.
     pub dir: PathBuf,
     /// Linker flags for a program with one of the archives, from rustc.
@@ -126,12 +126,12 @@ pub fn output_dir() -> PathBuf {
 }
 
 /// Returns the release library, which it builds once per process and precision.
-pub fn library(precision: Precision) -> &'static Built {
-    static LIBRARIES: [OnceLock<Built>; 2] = [OnceLock::new(), OnceLock::new()];
+pub fn library(precision: Precision) -> &'static LibraryBuild {
+    static LIBRARIES: [OnceLock<LibraryBuild>; 2] = [OnceLock::new(), OnceLock::new()];
     LIBRARIES[precision as usize].get_or_init(|| build_library(precision))
 }
 
-fn build_library(precision: Precision) -> Built {
+fn build_library(precision: Precision) -> LibraryBuild {
     let output = output_dir();
     // Both precisions share their crates. Of parallel test binaries one builds, the others wait.
     let target = output.join("library");
@@ -169,7 +169,7 @@ fn build_library(precision: Precision) -> Built {
     replace(&dir.join("libccd.so.2"), |new| std::os::unix::fs::symlink("libccd.so", new));
     rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
     drop(lock);
-    Built { dir, native_flags }
+    LibraryBuild { dir, native_flags }
 }
 
 /// Opens a file and locks it against all other threads and processes.
@@ -458,7 +458,7 @@ impl Program {
         }
         drop(lock);
 
-        let executable = Executable { library_path, tools: self.tools, ..Executable::made_elsewhere(&self.name, path) };
+        let executable = Executable { library_path, tools: self.tools, ..Executable::from_path(&self.name, path) };
         match self.link {
             Link::OursShared => executable.assert_loads_ours(),
             Link::OursStatic => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
@@ -474,7 +474,7 @@ pub struct Executable {
     pub path: PathBuf,
     name: String,
     /// Words of a command that runs the program.
-    before: Vec<OsString>,
+    launcher: Vec<OsString>,
     library_path: Option<PathBuf>,
     timeout: Duration,
     tools: bool,
@@ -497,11 +497,11 @@ impl Written {
 
 impl Executable {
     /// Returns a program that another tool compiled, with its own search path for libraries.
-    pub fn made_elsewhere(name: &str, path: impl Into<PathBuf>) -> Executable {
+    pub fn from_path(name: &str, path: impl Into<PathBuf>) -> Executable {
         Executable {
             path: path.into(),
             name: name.to_owned(),
-            before: Vec::new(),
+            launcher: Vec::new(),
             library_path: None,
             timeout: Duration::from_secs(300),
             tools: true,
@@ -522,15 +522,15 @@ impl Executable {
         let mut compared = self.clone();
         let library = library(Precision::Double).dir.join("libccd.so");
         compared.library_path = None;
-        compared.before = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
-        compared.before.extend(["--fields".into(), "--library".into(), library.into()]);
-        compared.before.extend(options.iter().map(OsString::from));
+        compared.launcher = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
+        compared.launcher.extend(["--fields".into(), "--library".into(), library.into()]);
+        compared.launcher.extend(options.iter().map(OsString::from));
         compared
     }
 
     /// Prints compare.sh's screen on stderr in place of that line.
     pub fn with_screen(mut self) -> Executable {
-        self.before.retain(|word| word != "--fields");
+        self.launcher.retain(|word| word != "--fields");
         self
     }
 
@@ -576,7 +576,7 @@ impl Executable {
     /// Returns the command that runs the program, without arguments.
     pub fn command(&self) -> Command {
         let runner = self.runner().into_iter().map(OsString::from);
-        self.command_of(runner.chain(self.before.clone()))
+        self.command_of(runner.chain(self.launcher.clone()))
     }
 
     /// Returns the command that runs the program with the words of `runner` before it.

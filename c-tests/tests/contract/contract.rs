@@ -31,7 +31,7 @@ fn program(name: &str) -> Program {
 }
 
 /// Returns a program that runs on this library alone.
-fn alone(name: &str) -> Program {
+fn on_this_library(name: &str) -> Program {
     program(name).flag("-DOURS_ALONE").link_ours_shared()
 }
 
@@ -274,7 +274,7 @@ fn headers_compile_without_warnings() {
 
 #[test]
 fn distances_of_a_point_to_segments_and_triangles() {
-    alone("point_distance").build().run([harness::rounds(20_000)]);
+    on_this_library("point_distance").build().run([harness::rounds(20_000)]);
 }
 
 fn polytope_program() -> Program {
@@ -326,32 +326,32 @@ fn polytope_functions_take_no_more_instructions_than_libccd() {
 
 #[test]
 fn callbacks() {
-    alone("callbacks").library("pthread").build().run(NO_ARGS);
+    on_this_library("callbacks").library("pthread").build().run(NO_ARGS);
 }
 
 #[test]
 fn arguments() {
-    alone("arguments").build().run([harness::rounds(100)]);
+    on_this_library("arguments").build().run([harness::rounds(100)]);
 }
 
 #[test]
 fn memory() {
-    alone("memory").without_tools().build().run(NO_ARGS);
+    on_this_library("memory").without_tools().build().run(NO_ARGS);
 }
 
 #[test]
 fn threads() {
-    alone("threads").library("pthread").build().run(NO_ARGS);
+    on_this_library("threads").library("pthread").build().run(NO_ARGS);
 }
 
 #[test]
 fn longjmp_out_of_callbacks() {
-    alone("exceptions").build().run([harness::rounds(20)]);
-    alone("exceptions").link_ours_static().build().run([harness::rounds(20)]);
+    on_this_library("exceptions").build().run([harness::rounds(20)]);
+    on_this_library("exceptions").link_ours_static().build().run([harness::rounds(20)]);
 }
 
 #[test]
 fn exceptions_out_of_callbacks() {
-    alone("exceptions").in_cpp().build().run([harness::rounds(20)]);
-    alone("exceptions").in_cpp().link_ours_static().build().run([harness::rounds(20)]);
+    on_this_library("exceptions").in_cpp().build().run([harness::rounds(20)]);
+    on_this_library("exceptions").in_cpp().link_ours_static().build().run([harness::rounds(20)]);
 }

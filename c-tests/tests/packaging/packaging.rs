@@ -18,7 +18,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 
 /// Makes an empty directory of this name.
-fn fresh(name: &str) -> PathBuf {
+fn empty_dir(name: &str) -> PathBuf {
     let dir = output_dir().join("packaging").join(Precision::CURRENT.name()).join(name);
     if dir.exists() {
         fs::remove_dir_all(&dir).expect("an old run's directory can be removed");
@@ -72,7 +72,7 @@ fn build(source: &str, build: &Path, options: &[String]) {
 fn installed_and_moved() -> &'static Path {
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
-        let dir = fresh("installed");
+        let dir = empty_dir("installed");
         let (tree, first, prefix) = (dir.join("build"), dir.join("first"), dir.join("prefix"));
         build("cmake", &tree, &[define("CMAKE_INSTALL_PREFIX", &first)]);
         cmake(&[&"--install", &tree]);
@@ -85,7 +85,7 @@ fn installed_and_moved() -> &'static Path {
 /// Configures and builds the consumer in the folder `name`, which it returns. `options` override the
 /// usual ones.
 fn consumer(name: &str, way: &str, options: &[String]) -> PathBuf {
-    let folder = fresh(name);
+    let folder = empty_dir(name);
     let usual = [define("WAY", way), define("REPOSITORY", root())];
     build("c-tests/tests/packaging/consumer", &folder, &[&usual, options].concat());
     folder
@@ -95,7 +95,7 @@ fn consumer(name: &str, way: &str, options: &[String]) -> PathBuf {
 /// the static one.
 fn assert_runs_on_ours(program: &Path, shared_under: Option<&Path>) {
     let name = program.file_name().expect("a program").to_string_lossy();
-    let program = Executable::made_elsewhere(&name, program);
+    let program = Executable::from_path(&name, program);
     let loaded = program.loaded_ccd();
     match shared_under {
         Some(dir) => assert!(loaded.as_ref().is_some_and(|path| path.starts_with(dir)), "{name} runs on {loaded:?}"),
@@ -131,7 +131,7 @@ fn add_subdirectory_and_fetch_content() {
         ("Ninja", "add_subdirectory", Some("-GNinja"), ""),
         ("multi-config", "add_subdirectory", Some("-GNinja Multi-Config"), "Debug"),
     ] {
-        let prefix = fresh("parent").join(name);
+        let prefix = empty_dir("parent").join(name);
         let mut options = vec![define("CMAKE_INSTALL_PREFIX", &prefix)];
         options.extend(option.map(String::from));
         let build = consumer(name, way, &options);
@@ -170,7 +170,7 @@ fn fetch_content_from_git() {
     assert_eq!(tag, "main");
     // The tracked files as they are now, committed to a new repository: the time stamps of the
     // index and the user's git identity do not matter.
-    let upstream = fresh("upstream");
+    let upstream = empty_dir("upstream");
     let branch = format!("--initial-branch={tag}");
     git(&upstream, &[&"init", &"--quiet", &branch]);
     let files = git(root(), &[&"ls-files", &"-z", &"--cached"]);
@@ -198,7 +198,7 @@ fn fetch_content_from_git() {
 /// Checks that with BUILD_SHARED_LIBS=OFF `ccd` is the static library, in a build tree and installed.
 #[test]
 fn static_library_only() {
-    let dir = fresh("static-only");
+    let dir = empty_dir("static-only");
     let (tree, prefix) = (dir.join("build"), dir.join("prefix"));
     let off = define("BUILD_SHARED_LIBS", "OFF");
     build("cmake", &tree, &[define("CMAKE_INSTALL_PREFIX", &prefix), off.clone()]);
@@ -227,7 +227,7 @@ fn write_script(path: &Path, line: &str) {
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn cmake_reports_a_missing_or_old_rust() {
-    let dir = fresh("rust");
+    let dir = empty_dir("rust");
     let cargo_printing = |line: &str| {
         let script = dir.join(line.split(' ').next_back().expect("a word"));
         write_script(&script, line);
@@ -260,7 +260,7 @@ fn cmake_reports_a_missing_or_old_rust() {
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn setup_reports_an_old_rust() {
-    let dir = fresh("old-rust");
+    let dir = empty_dir("old-rust");
     for tool in ["cargo", "rustc"] {
         write_script(&dir.join(tool), &format!("{tool} 1.63.0 (fd9c4297c 2022-07-01)"));
     }
@@ -286,7 +286,7 @@ fn a_build_of_the_source_archive_is_offline_and_reproducible() {
         println!("skipped: not a git repository");
         return;
     }
-    let dir = fresh("source");
+    let dir = empty_dir("source");
     let source = root().join("cmake/packages/source.sh");
     let archive = run(Command::new("sh"), &[&source, &dir]);
     let name = concat!("warmccd-", env!("CARGO_PKG_VERSION"), ".tar.xz");
@@ -343,7 +343,7 @@ fn notices_name_every_crate() {
 fn libraries_are_small() {
     let prefix = installed_and_moved();
     let [shared, archive] = ["libccd.so.2.0", "libccd.a"].map(|name| find(prefix, name));
-    let bare = fresh("stripped").join("libccd.so");
+    let bare = empty_dir("stripped").join("libccd.so");
     let built = harness::library(Precision::CURRENT).dir.join("libccd.so");
     run(harness::binutils("strip"), &[&"-o", &bare, &built]);
     for file in [&shared, &bare] {
@@ -388,7 +388,7 @@ fn size(path: &Path) -> u64 {
 fn static_link_adds_little() {
     let prefix = installed_and_moved();
     let archive = find(prefix, "libccd.a");
-    let programs = fresh("sizes");
+    let programs = empty_dir("sizes");
     let program = |name: &str, code: &str, libraries: &[&OsStr]| {
         let source = programs.join(format!("{name}.c"));
         fs::write(&source, code).expect("a file can be written");
@@ -413,7 +413,7 @@ fn static_link_adds_little() {
 #[test]
 fn pkg_config() {
     let prefix = installed_and_moved();
-    let programs = fresh("pkg-config");
+    let programs = empty_dir("pkg-config");
     let archive = find(prefix, "libccd.a");
     let libdir = archive.parent().expect("a directory");
     let pkg_config = |args: &[&str]| -> Vec<String> {
@@ -454,7 +454,7 @@ fn pkg_config() {
 /// libccd has them, and none names a directory of the build.
 #[test]
 fn destdir_and_multiarch() {
-    let dir = fresh("destdir");
+    let dir = empty_dir("destdir");
     let (tree, stage) = (dir.join("build"), dir.join("stage"));
     build("cmake", &tree, &[define("CMAKE_INSTALL_PREFIX", "/usr")]);
     let mut install = Command::new("cmake");
@@ -554,7 +554,7 @@ fn program_of(place: &str, name: &str, language: &str) -> PathBuf {
     let page = page(name);
     let program =
         page.split_once(&format!("```{language}\n")).and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
-    let source = fresh(place).join(format!("program.{language}"));
+    let source = empty_dir(place).join(format!("program.{language}"));
     fs::write(&source, program).expect("a file can be written");
     source
 }
@@ -621,7 +621,7 @@ fn include_readme_c_program() {
 #[cfg(not(feature = "single"))]
 fn readme_link_commands() {
     let library = harness::library(Precision::CURRENT);
-    let here = fresh("readme-links");
+    let here = empty_dir("readme-links");
     fs::create_dir_all(here.join("target/swap")).expect("a directory");
     let link = |from: &Path, to: &str| {
         std::os::unix::fs::symlink(from, here.join(to)).expect("a link can be made");

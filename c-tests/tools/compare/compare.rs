@@ -159,7 +159,7 @@ fn threads_children_and_nested_queries_are_counted() {
 /// Returns the exit code, or 128 and the signal as in a shell, and the tool's output.
 fn screen_of(program: &Path, args: &[&str], options: &[&str]) -> (i32, String) {
     let (status, written) =
-        Executable::made_elsewhere("compared", program).quiet().compared(options).with_screen().run_to_end(args);
+        Executable::from_path("compared", program).quiet().compared(options).with_screen().run_to_end(args);
     (status.code().expect("a code"), written.stderr)
 }
 
