@@ -98,7 +98,7 @@ static double position_error(const lying_t &lying, int poses)
         const fcl::Vector3d pos = result.getContact(0).pos;
         const ccd_vec3_t below = lowest(a.shape);
         const double up[3] = {0, 0, 1}, within[3] = {below.v[0], below.v[1], -depth / 2};
-        if (!(pressure_centre(&a.shape, &b.shape, up, within, truth) > 0))
+        if (!(center_of_pressure(&a.shape, &b.shape, up, within, truth) > 0))
             continue;
         square += (pos[0] - truth[0]) * (pos[0] - truth[0]) + (pos[1] - truth[1]) * (pos[1] - truth[1]);
         judged++;

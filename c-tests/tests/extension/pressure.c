@@ -140,7 +140,7 @@ static void set_poses(const sweep_t *s, double depth)
             place[0] = fmin(place[0], 0.1 - 1e-9);
         if (s->ground != FLOOR)
             common_point(&p->body, &p->floor, place);
-        p->overlap = pressure_centre(&p->body, &p->floor, up, place, p->truth) > 0;
+        p->overlap = center_of_pressure(&p->body, &p->floor, up, place, p->truth) > 0;
     }
 }
 
@@ -234,7 +234,7 @@ static void range_errors(unsigned kind, double share, double error[2])
             middle[i] = 0.5 * ((double)p.point1.v[i] + (double)p.point2.v[i]);
             pos[i] = (double)p.pos.v[i];
         }
-        if (!(pressure_centre(&a, &b, normal, middle, truth) > 0))
+        if (!(center_of_pressure(&a, &b, normal, middle, truth) > 0))
             continue;
         for (int i = 0; i < 2; i++) {
             double *at = i == 0 ? pos : middle, along = 0;

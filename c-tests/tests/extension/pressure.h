@@ -176,8 +176,8 @@ static inline void pressure_sector(pressure_t *c, double from, const double p[2]
 
 /* Computes the centroid of the common volume of a and b, by chords along the unit vector n, from a point `place` in
  * it. Returns the volume, 0 where it is empty. */
-static inline double pressure_centre(const shape_t *a, const shape_t *b, const double n[3], const double place[3],
-                                     double centre[3])
+static inline double center_of_pressure(const shape_t *a, const shape_t *b, const double n[3], const double place[3],
+                                     double center[3])
 {
     enum { SECTORS = 24 };
     const double turn = 8 * atan(1.0) / SECTORS;
@@ -201,7 +201,7 @@ static inline double pressure_centre(const shape_t *a, const shape_t *b, const d
     for (int i = 0; i < SECTORS; i++)
         pressure_sector(&c, i * turn, edge[i], (i + 1) * turn, edge[(i + 1) % SECTORS]);
     for (int i = 0; i < 3; i++)
-        centre[i] = c.moment[i] / c.volume;
+        center[i] = c.moment[i] / c.volume;
     return c.volume;
 }
 

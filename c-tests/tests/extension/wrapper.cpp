@@ -174,7 +174,7 @@ static void results_are_those_of_c()
         c.center1 = c.center2 = nullptr;
         ccd_penetration_t out;
         const int without = ccdPenetrationLocal(o1, o2, &c, nullptr, all, &out);
-        check_same("without centres", ccd::penetration_local(WithoutCenter{a}, WithoutCenter{b}, settings), without, out);
+        check_same("without centers", ccd::penetration_local(WithoutCenter{a}, WithoutCenter{b}, settings), without, out);
         c.center1 = c.center2 = shape_center;
         const int spelt = ccdPenetrationLocal(o1, o2, &c, nullptr, all, &out);
         check_same("center", ccd::penetration_local(AmericanSpelling{a}, AmericanSpelling{b}, settings), spelt, out);
@@ -182,9 +182,9 @@ static void results_are_those_of_c()
         CHECK(ccd::mpr_intersect(AmericanSpelling{a}, b) == ccd::mpr_intersect(a, b), "center");
         c.center1 = c.center2 = nullptr;
         ccdPenetrationLocal(o1, o2, &c, nullptr, all, &out);
-        check_same("one centre", ccd::penetration_local(WithoutCenter{a}, b, settings), without, out);
+        check_same("one center", ccd::penetration_local(WithoutCenter{a}, b, settings), without, out);
         CHECK(ccd::gjk_intersect(WithoutCenter{a}, WithoutCenter{b}) == ccd::gjk_intersect(a, b), "a foreign vector");
-        CHECK(ccd::intersect(WithoutCenter{a}, b) == (ccdIntersect(o1, o2, &c, nullptr) == 1), "intersect without a centre");
+        CHECK(ccd::intersect(WithoutCenter{a}, b) == (ccdIntersect(o1, o2, &c, nullptr) == 1), "intersect without a center");
     }
     CHECK(hits > 100 && misses > 100, "%d hits, %d misses", hits, misses);
 }
