@@ -24,8 +24,9 @@ static const double HALF = 0.125;
 typedef struct {
     const char *name;
     shape_t body;
-    double axis[3], initial;
-    double sweep_axis[3];
+    const double *axis;
+    double initial;
+    const double *sweep_axis;
     double roll; /* degrees a step, of a body that rolls or turns on the spot; 0: small angles */
     double slide; /* metres along x, over the floor's edge, in place of the angle */
     double max_rms, max_step; /* metres; steps beyond twice the exact one */
@@ -268,43 +269,39 @@ static void random_pairs(void)
 int main(int argc, char **argv)
 {
     const double q = deg(90);
-    const double corner[3] = {1, -1, 0};
-    static const double X[3] = {1, 0, 0}, Y[3] = {0, 1, 0}, Z[3] = {0, 0, 1}, XY[3] = {1, 0.6, 0};
+    static const double corner[3] = {1, -1, 0}, X[3] = {1, 0, 0}, Y[3] = {0, 1, 0}, Z[3] = {0, 0, 1}, XY[3] = {1, 0.6, 0};
+/* max_rms, max_step */
 #define FLAT 3e-3, 1e-3
 #define ROUND 7e-3, 5e-3
 /* Its radius falls along the line that it lies on, and so does the correction for it: where the
  * deepest point jumps along the line, pos follows in part. */
 #define TAPERED 15e-3, 50e-3
-#define SWEEP(name, body, axis, before, about, rolls, slide, ...) \
-    {name, body, {axis[0], axis[1], axis[2]}, before, {about[0], about[1], about[2]}, rolls, slide, __VA_ARGS__, FLOOR, 0}
-/* Turned on the spot, leaning. */
-#define TURN(name, body, ground, lean, ...) {name, body, {0, 0, 1}, 0, {0, 0, 1}, 1.43, 0, __VA_ARGS__, ground, lean}
     const shape_t box = shape_box(HALF, HALF, HALF), brick = shape_box(HALF, 0.08, 0.06);
     const shape_t can = shape_cylinder(0.09, HALF), rod = shape_capsule(0.05, HALF), hat = shape_cone(HALF, HALF);
     const shape_t egg = shape_ellipsoid(0.1, 0.07, HALF), ball = shape_sphere(HALF);
     const sweep_t all[] = {
-        SWEEP("box", box, Z, 0, Y, 0, 0, FLAT),
-        SWEEP("box yawed", box, Z, 0.3, Y, 0, 0, FLAT),
-        SWEEP("brick, two axes", brick, Z, 0.1, XY, 0, 0, FLAT),
-        SWEEP("box over the edge", box, Z, 0, Y, 0, 0.2, FLAT),
-        SWEEP("yawed box over the edge", box, Z, 0.5, Y, 0, 0.2, FLAT),
-        SWEEP("brick on an edge", brick, X, deg(40), Y, 0, 0, FLAT),
-        SWEEP("box on a corner", box, corner, 0.9, Y, 1, 0, FLAT),
-        SWEEP("cylinder standing", can, Z, 0, Y, 0, 0, ROUND),
-        SWEEP("cylinder lying", can, X, q, X, 0, 0, ROUND),
-        SWEEP("cylinder rolling", can, X, q, Y, 1, 0, ROUND),
-        SWEEP("capsule lying", rod, X, q, X, 0, 0, ROUND),
-        SWEEP("cone on its base", hat, Z, 0, Y, 0, 0, ROUND),
-        SWEEP("cone on its side", hat, X, q + atan(0.5), X, 0, 0, TAPERED),
-        SWEEP("ellipsoid", egg, X, 0.7, Y, 1, 0, ROUND),
-        SWEEP("sphere", ball, X, 0.7, Y, 1, 0, ROUND),
-        TURN("box turning", box, FLOOR, 0.4, FLAT),
-        TURN("box turning, leaning more", box, FLOOR, 0.9, FLAT),
-        TURN("box turning on a box", box, BOX, 0.4, FLAT),
-        TURN("brick turning on a box", brick, BOX, 0.9, FLAT),
-        TURN("box turning on a disc", box, DISC, 0.4, ROUND),
-        TURN("box turning on a disc, leaning more", box, DISC, 0.9, ROUND),
-        TURN("can turning on a box", can, BOX, 0.4, ROUND),
+        {"box", box, Z, 0, Y, 0, 0, FLAT, FLOOR, 0},
+        {"box yawed", box, Z, 0.3, Y, 0, 0, FLAT, FLOOR, 0},
+        {"brick, two axes", brick, Z, 0.1, XY, 0, 0, FLAT, FLOOR, 0},
+        {"box over the edge", box, Z, 0, Y, 0, 0.2, FLAT, FLOOR, 0},
+        {"yawed box over the edge", box, Z, 0.5, Y, 0, 0.2, FLAT, FLOOR, 0},
+        {"brick on an edge", brick, X, deg(40), Y, 0, 0, FLAT, FLOOR, 0},
+        {"box on a corner", box, corner, 0.9, Y, 1, 0, FLAT, FLOOR, 0},
+        {"cylinder standing", can, Z, 0, Y, 0, 0, ROUND, FLOOR, 0},
+        {"cylinder lying", can, X, q, X, 0, 0, ROUND, FLOOR, 0},
+        {"cylinder rolling", can, X, q, Y, 1, 0, ROUND, FLOOR, 0},
+        {"capsule lying", rod, X, q, X, 0, 0, ROUND, FLOOR, 0},
+        {"cone on its base", hat, Z, 0, Y, 0, 0, ROUND, FLOOR, 0},
+        {"cone on its side", hat, X, q + atan(0.5), X, 0, 0, TAPERED, FLOOR, 0},
+        {"ellipsoid", egg, X, 0.7, Y, 1, 0, ROUND, FLOOR, 0},
+        {"sphere", ball, X, 0.7, Y, 1, 0, ROUND, FLOOR, 0},
+        {"box turning", box, Z, 0, Z, 1.43, 0, FLAT, FLOOR, 0.4},
+        {"box turning, leaning more", box, Z, 0, Z, 1.43, 0, FLAT, FLOOR, 0.9},
+        {"box turning on a box", box, Z, 0, Z, 1.43, 0, FLAT, BOX, 0.4},
+        {"brick turning on a box", brick, Z, 0, Z, 1.43, 0, FLAT, BOX, 0.9},
+        {"box turning on a disc", box, Z, 0, Z, 1.43, 0, ROUND, DISC, 0.4},
+        {"box turning on a disc, leaning more", box, Z, 0, Z, 1.43, 0, ROUND, DISC, 0.9},
+        {"can turning on a box", can, Z, 0, Z, 1.43, 0, ROUND, BOX, 0.4},
     };
     double world[2][9];
     unsigned i;
