@@ -40,7 +40,7 @@ figures='
         return of[key]
     }
     / of them overlap/ { pairs = $5; overlaps = $7; lines = 0 }
-    /^a support point alone/ { $5 = least(price, FILENAME, $5) }
+    /^a support point alone/ { $5 = least(cost, FILENAME, $5) }
     NF > 10 && $NF ~ /^[0-9]+$/ { # a method: a name of 17 columns, then 10 figures
         name = substr($0, 1, 17)
         sub(/ +$/, "", name)
@@ -50,12 +50,12 @@ figures='
         $0 = sprintf("%s %5s %5s", substr($0, 1, length($0) - 12), least(hit, n, $(NF - 1)), least(ns, n, $NF))
     }
     { line[++lines] = $0 }
-    # Returns the price of a support point (a call of both support functions) above which a method is faster than one
+    # Returns the cost of a support point (a call of both support functions) above which a method is faster than one
     # that needs more of them: its additional time over the support points that it saves.
     function breakeven(n, base) {
         if (ns[n] <= ns[base]) return "always"
         if (supports[base] <= supports[n]) return "never"
-        return sprintf("%.2f us", (price[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
+        return sprintf("%.2f us", (cost[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
     }'
 
 # show TITLE TABLE
@@ -117,15 +117,15 @@ verdict() {
             base = theirs SUBSEP "MPR"; epa = theirs SUBSEP "GJK + EPA"
             printf "%d recorded pairs, %d of them overlap; libccd, this library, this library without pos:\n", pairs, overlaps
             row = "  %-38s %9s %9s %9s\n"
-            printf row, "wrong answers, ccdMPRPenetration", wrong[base], wrong[mpr], wrong[lean]
-            printf row, "wrong answers, ccdGJKPenetration", wrong[epa], wrong[gjk], ""
+            printf row, "wrong results, ccdMPRPenetration", wrong[base], wrong[mpr], wrong[lean]
+            printf row, "wrong results, ccdGJKPenetration", wrong[epa], wrong[gjk], ""
             printf row, "support points, ccdMPRPenetration", supports[base], supports[mpr], supports[lean]
             printf row, "time, all pairs", "1.00", ratio(ns[mpr], ns[base]), ratio(ns[lean], ns[base])
             printf row, "time, pairs that overlap", "1.00", ratio(hit[mpr], hit[base]), ratio(hit[lean], hit[base])
             printf row, "faster if a support point costs above", "", breakeven(mpr, base), breakeven(lean, base)
-            printf "Wrong answers of ccdMPRPenetration: %d on libccd, %d here. ", wrong[base], wrong[mpr]
-            printf "Here it is the faster one if a support point (a call of both support functions) costs above %s,", breakeven(mpr, base)
-            printf " without pos above %s; in this program it costs %.3f us.\n", breakeven(lean, base), price[theirs] / 1000
+            printf "Wrong results of ccdMPRPenetration: %d with libccd, %d with this library. ", wrong[base], wrong[mpr]
+            printf "This library is faster if a support point (a call of both support functions) costs more than %s,", breakeven(mpr, base)
+            printf " without pos more than %s; in this program it costs %.3f us.\n", breakeven(lean, base), cost[theirs] / 1000
         }' "$@"
 }
 
@@ -136,16 +136,17 @@ readme_table() {
             n = file SUBSEP name
             even = n == base ? "" : breakeven(n, base)
             sub("us", "µs", even)
-            printf "| %s | %.2f %% | %s | %.1f | %.2f | %.2f | %s |\n", call, 100 * wrong[n] / pairs, proven, supports[n],
+            share = wrong[n] ? sprintf("%.2f %%", 100 * wrong[n] / pairs) : "0"
+            printf "| %s | %s | %s | %.1f | %.2f | %.2f | %s |\n", call, share, proven, supports[n],
                    ns[n] / ns[base], hit[n] / hit[base], even
         }
         END {
             theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
             base = theirs SUBSEP "MPR"
-            print "| call | wrong | minimum within | support points | time | time of a hit | faster above |"
+            print "| call | wrong | error of the depth, at most | support points | time | time, overlapping | faster above |"
             print "|---|---|---|---|---|---|---|"
-            row("libccd `ccdMPRPenetration`", theirs, "MPR", "no bound")
-            row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "no bound")
+            row("libccd `ccdMPRPenetration`", theirs, "MPR", "unbounded")
+            row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "unbounded")
             row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
             row("`ccdMPRPenetration`, `pos` NULL", warm, "MPR, no pos", "0.1 %")
             row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")
@@ -166,5 +167,5 @@ fi
 if [ -e theirs.txt ]; then
     verdict theirs.txt ours.txt warm.txt
 else
-    awk "$figures"'END { printf "Wrong answers of ccdMPRPenetration: %d of %d\n", wrong[ARGV[1] SUBSEP "MPR"], pairs }' ours.txt
+    awk "$figures"'END { printf "Wrong results of ccdMPRPenetration: %d of %d\n", wrong[ARGV[1] SUBSEP "MPR"], pairs }' ours.txt
 fi
