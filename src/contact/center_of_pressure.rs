@@ -154,9 +154,7 @@ fn is_plane<A: SupportMap, B: SupportMap, const N: usize>(
         let side = offset(corner, &face[(i + 1) % 4]);
         let least = side.perp(&corner.xy()) - slack * (side.x.abs() + side.y.abs());
         // The other object's outline is mirrored.
-        outline
-            .iter()
-            .all(|end| side.y * end.x - side.x * end.y >= least)
+        outline.iter().all(|p| side.y * p.x - side.x * p.y >= least)
     })
 }
 

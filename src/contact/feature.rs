@@ -59,7 +59,7 @@ const POINT_REL: f64 = 0.016;
 const SAME_REL: f64 = 1e-7;
 /// Largest difference of the drop, in depths, between a fourth corner and the plane of three for a common face.
 /// Above it the surface between them is not flat. Insensitive: 0.1 to 1 tried.
-const SAME_FACE_DROP_TOL: f64 = 0.1;
+const FACE_DROP_TOL: f64 = 0.1;
 /// Relative area below which three corners count as collinear, and the deepest point as inside a side.
 /// Insensitive: 0.005 to 0.08 tried.
 const NARROW_REL: f64 = 0.02;
@@ -390,7 +390,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
     fn is_symmetric(&self, a: &Vec3, b: &Vec3) -> bool {
         let tolerance = SYMMETRY_REL_TOL * self.extent;
         let distance2 = (a + b).xy().norm_squared();
-        distance2 < tolerance * tolerance && (a.z - b.z).abs() < SAME_FACE_DROP_TOL
+        distance2 < tolerance * tolerance && (a.z - b.z).abs() < FACE_DROP_TOL
     }
 
     /// Returns whether the vertices, as far down as the depth, are within a point's size.
@@ -488,7 +488,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let out = Vec2::new(q.y - p.y, p.x - q.x) / length;
         let v = self.query(object, gradient * self.depth + out * self.tilt)?;
         let is_beyond = out.dot(&offset(p, &v)) > 2.0 * self.vertex_offset;
-        let is_in_plane = v.z <= o.z + gradient.dot(&offset(o, &v)) + SAME_FACE_DROP_TOL;
+        let is_in_plane = v.z <= o.z + gradient.dot(&offset(o, &v)) + FACE_DROP_TOL;
         Ok((is_beyond && is_in_plane).then(|| (side + 1, self.offset_outwards(&v, out))))
     }
 
@@ -524,8 +524,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let is_there = |out, found: &Vec3| {
             let error = on_rim(out) - found;
             let tolerance = RIM_REL_TOL * radius;
-            error.xy().norm_squared() <= tolerance * tolerance
-                && error.z.abs() <= SAME_FACE_DROP_TOL
+            error.xy().norm_squared() <= tolerance * tolerance && error.z.abs() <= FACE_DROP_TOL
         };
         // False for NaN.
         let is_rim = radius > 2.0 * self.vertex_offset

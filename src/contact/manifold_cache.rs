@@ -114,11 +114,8 @@ impl CachedFace {
             ..Self::default()
         };
         for (stored, s) in cached.samples.iter_mut().zip(samples.iter()) {
-            let parts = [
-                s.tilt,
-                offset(origin, &s.found),
-                offset(&s.found, &s.corner),
-            ];
+            let to_core = offset(&s.found, &s.corner);
+            let parts = [s.tilt, offset(origin, &s.found), to_core];
             *stored = parts.map(|v| [v.x as f32, v.y as f32]);
         }
         cached
@@ -147,9 +144,8 @@ impl CachedFace {
             rotation = UnitComplex::rotation_between(&a, &b);
         }
         let is_one = |(a, b): (Vec2, Vec2)| (rotation * a - b).norm() <= slack;
-        spokes()
-            .all(is_one)
-            .then_some(Motion { rotation, from, to })
+        let motion = Motion { rotation, from, to };
+        spokes().all(is_one).then_some(motion)
     }
 }
 

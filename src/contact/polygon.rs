@@ -117,10 +117,8 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
     /// Returns the drop at a position: that of the mean plane, or interpolated between the ends of a segment.
     pub fn drop_at(&self, at: &Vec3) -> f64 {
         let drops = || self.iter().map(|c| c.z);
-        let (least, most) = (
-            drops().fold(f64::INFINITY, lesser),
-            drops().fold(0.0, larger),
-        );
+        let least = drops().fold(f64::INFINITY, lesser);
+        let most = drops().fold(0.0, larger);
         let [a, b] = [self.cyclic(0), self.cyclic(1)];
         let drop = if self.len() == 2 {
             a.z + (b.z - a.z) * segment_parameter(at, a, b)

@@ -155,10 +155,8 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     let far = query.evaluate(set, dir)?;
     let far = set.point(far.pair);
     let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
-    let t = lesser(
-        larger(closest, MIN_CHORD_FRACTION),
-        1.0 - MIN_CHORD_FRACTION,
-    );
+    let max = 1.0 - MIN_CHORD_FRACTION;
+    let t = lesser(larger(closest, MIN_CHORD_FRACTION), max);
     let mut inner = from.towards(&far, t);
     if !(inner.v.norm() > query.scale.contact_eps()) {
         inner = inner.towards(&far, 0.5);

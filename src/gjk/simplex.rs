@@ -285,8 +285,7 @@ impl Simplex {
             } else {
                 contact_eps
             };
-            height > clear_height
-                || height > -clear_height && is_clear_of_face(height, p, q, w, slack)
+            height > clear_height || height > -clear_height && is_clear_of(height, p, q, w, slack)
         };
         let mut best: Option<Feature> = None;
         let corners = [i, j, k, i];
@@ -308,7 +307,7 @@ impl Simplex {
 /// Returns whether the distance of the origin from the face of p, q and w exceeds twice the slack and the
 /// rounding error. `height`: that distance times twice the area of the face.
 #[cold]
-fn is_clear_of_face(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
+fn is_clear_of(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     // The error of the product is proportional to the corners' lengths, however small the face is.
     let lengths = p.norm() * q.norm() * w.norm();
     let error = if slack > 0.0 {
@@ -345,10 +344,8 @@ pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
         if let Some(new) = olds.iter().position(|o| *o == old) {
             return new;
         }
-        let new = kept.push(
-            &set.dir(old),
-            &set.point(VertexSet::<N>::pair_of_entry(old)),
-        );
+        let pair = VertexSet::<N>::pair_of_entry(old);
+        let new = kept.push(&set.dir(old), &set.point(pair));
         if let Some(slot) = olds.get_mut(new) {
             *slot = old;
         }
@@ -381,8 +378,8 @@ mod tests {
             let w = p * r.within(0.5, 2.0) + q * r.within(-1.0, 1.0);
             let height = p.cross(&q).dot(&w);
             // The object is a thousand times as large as the face.
-            assert!(!is_clear_of_face(height, &p, &q, &w, EPSILON));
-            assert!(is_clear_of_face(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
+            assert!(!is_clear_of(height, &p, &q, &w, EPSILON));
+            assert!(is_clear_of(1e3 * EPSILON * 1e-9, &p, &q, &w, EPSILON));
         }
     }
 

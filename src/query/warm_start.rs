@@ -184,10 +184,8 @@ impl WarmStart {
             WarmKind::Overlap => 2,
             WarmKind::CurvedOverlap => 3,
         };
-        (
-            [x, y, z, self.depth, radius1, radius2],
-            [kind, self.center_direction],
-        )
+        let reals = [x, y, z, self.depth, radius1, radius2];
+        (reals, [kind, self.center_direction])
     }
 
     /// Unpacks a state; returns a cold one unless the kind is known, the direction unit and each length valid.
