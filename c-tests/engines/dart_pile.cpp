@@ -42,7 +42,8 @@ static dynamics::ShapePtr shape_of(int i, const std::string &scene)
 
 static void add_wall(dynamics::BodyNode *pen, const Eigen::Vector3d &size, const Eigen::Vector3d &at)
 {
-    auto node = pen->createShapeNodeWith<dynamics::CollisionAspect, dynamics::DynamicsAspect>(std::make_shared<dynamics::BoxShape>(size));
+    auto box = std::make_shared<dynamics::BoxShape>(size);
+    auto node = pen->createShapeNodeWith<dynamics::CollisionAspect, dynamics::DynamicsAspect>(box);
     node->setRelativeTranslation(at);
 }
 
@@ -56,7 +57,8 @@ int main(int argc, char **argv)
     if (scene == "ode") {
         /* the library registers its detector when it is loaded; its header would need one more package */
         auto *factory = collision::CollisionDetector::getFactory();
-        const std::string detector = "libdart-collision-ode.so." + std::to_string(DART_MAJOR_VERSION) + "." + std::to_string(DART_MINOR_VERSION);
+        const std::string detector = "libdart-collision-ode.so." + std::to_string(DART_MAJOR_VERSION) + "." +
+                                     std::to_string(DART_MINOR_VERSION);
         if (!dlopen(detector.c_str(), RTLD_NOW | RTLD_GLOBAL) || !factory->canCreate("ode")) {
             fprintf(stderr, "no ODE detector\n");
             return 2;

@@ -15,7 +15,7 @@
 #include "engines/fcl_shapes.h"
 #include "harness/identity.h"
 #include "harness/this_library.h"
-#include "tools/compare/hooks.h"
+#include "tools/compare/counts.h"
 #if defined(BY_HEADER) && !defined(TIMED)
 /* compare.sh does not count the header's calls, which are the extension's. */
 static unsigned long query_count, support_count;
@@ -68,7 +68,8 @@ struct scene_t {
 
     scene_t(int n, const std::string &which) : bodies((size_t)n)
     {
-        std::vector<int> kinds = {SHAPE_BOX, SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE, KIND_PLATE};
+        std::vector<int> kinds = {SHAPE_BOX, SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID,
+                                  SHAPE_POLYTOPE, KIND_PLATE};
         if (which == "round")
             kinds = {SHAPE_SPHERE, SHAPE_CAPSULE};
         else if (which == "hulls")
@@ -131,33 +132,27 @@ static fcl::CollisionRequestd request()
 #ifdef BY_HEADER
 static ccd_fcl::PairCache cache;
 static ccd_fcl::Settings settings;
-
-static size_t collide_all(scene_t &scene)
-{
-    ccd_fcl::CollisionData<double> data(cache);
-    data.request = request();
-    data.settings = settings;
-    scene.manager.collide(&data, ccd_fcl::CollisionFunction<double>);
-    cache.next_frame();
-    return data.result.numContacts();
-}
-#else
-static size_t collide_all(scene_t &scene)
-{
-    fcl::DefaultCollisionData<double> data;
-    data.request = request();
-    scene.manager.collide(&data, fcl::DefaultCollisionFunction<double>);
-    return data.result.numContacts();
-}
 #endif
 
 #ifdef TIMED
 
-static double now()
+/* Collides all pairs; returns the number of contacts. */
+static size_t collide_all(scene_t &scene)
 {
-    timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
+#ifdef BY_HEADER
+    ccd_fcl::CollisionData<double> data(cache);
+    data.settings = settings;
+    const auto callback = ccd_fcl::CollisionFunction<double>;
+#else
+    fcl::DefaultCollisionData<double> data;
+    const auto callback = fcl::DefaultCollisionFunction<double>;
+#endif
+    data.request = request();
+    scene.manager.collide(&data, callback);
+#ifdef BY_HEADER
+    cache.next_frame();
+#endif
+    return data.result.numContacts();
 }
 
 static bool count_pair(object *, object *, void *pairs)
@@ -168,17 +163,17 @@ static bool count_pair(object *, object *, void *pairs)
 
 static void run(scene_t &scene, long frames, long)
 {
-    double nanoseconds = 0;
+    double seconds = 0;
     long pairs = 0;
     size_t contacts = 0;
     for (long frame = 0; frame < frames; frame++) {
-        const double start = now();
+        const double start = thread_seconds();
         contacts += collide_all(scene);
-        nanoseconds += now() - start;
+        seconds += thread_seconds() - start;
         scene.manager.collide(&pairs, count_pair);
         scene.step(1.0 / 60);
     }
-    printf("timed pairs %ld contacts %zu nanoseconds %.0f\n", pairs, contacts, nanoseconds);
+    printf("timed pairs %ld contacts %zu seconds %.6f\n", pairs, contacts, seconds);
     printf("processor seconds %.6f\n", (double)clock() / CLOCKS_PER_SEC);
 }
 

@@ -9,6 +9,7 @@
 #include "engines/poses.h"
 
 #include <fcl/fcl.h>
+#include <time.h>
 
 typedef fcl::Vector3<ccd_real_t> vec;
 typedef std::shared_ptr<fcl::CollisionGeometry<ccd_real_t>> geometry;
@@ -60,6 +61,14 @@ static inline fcl::Transform3<ccd_real_t> fcl_pose(const shape_t &s)
     t.linear() = Eigen::Map<const Eigen::Matrix<ccd_real_t, 3, 3, Eigen::RowMajor>>(s.rot);
     t.translation() = vec(s.pos[0], s.pos[1], s.pos[2]);
     return t;
+}
+
+/* Returns the processor time of this thread. */
+static inline double thread_seconds()
+{
+    timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 #endif

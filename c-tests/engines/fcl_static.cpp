@@ -10,7 +10,7 @@
 
 #include "engines/fcl_shapes.h"
 #include "tests/extension/pressure.h"
-#include "tools/compare/hooks.h"
+#include "tools/compare/counts.h"
 #include "harness/identity.h"
 
 static body_t a, b;

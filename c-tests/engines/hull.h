@@ -24,7 +24,8 @@ typedef struct {
 static inline double hull_plane(const hull_t *s, int i, int j, int k, double plane[4])
 {
     const ccd_real_t *a = s->vertex + 3 * i, *b = s->vertex + 3 * j, *c = s->vertex + 3 * k;
-    const double p[3] = { a[0], a[1], a[2] }, u[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] }, v[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
+    const double p[3] = { a[0], a[1], a[2] }, u[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
+    const double v[3] = { c[0] - a[0], c[1] - a[1], c[2] - a[2] };
     truth_cross3(u, v, plane);
     const double length = sqrt(truth_dot3(plane, plane));
     for (int l = 0; l < 3; l++)
@@ -112,21 +113,20 @@ static inline void hull_random(hull_t *s, int vertices, double rx, double ry, do
 /* Makes a box with these half extents, of eight vertices and six faces. */
 static inline void hull_box(hull_t *s, double x, double y, double z)
 {
+    /* +x, -x, +y, -y, +z, -z; bit k of a vertex's index: on the upper side of axis k */
+    static const unsigned polygon[30] = { 4, 1, 3, 7, 5, 4, 0, 4, 6, 2, 4, 2, 6, 7, 3,
+                                          4, 0, 1, 5, 4, 4, 4, 5, 7, 6, 4, 0, 2, 3, 1 };
     const double half[3] = { x, y, z };
     s->vertices = 8;
     s->faces = 6;
+    memcpy(s->polygon, polygon, sizeof polygon);
     for (int i = 0; i < 8; i++)
         for (int j = 0; j < 3; j++)
             s->vertex[3 * i + j] = i >> j & 1 ? half[j] : -half[j];
     for (int i = 0; i < 6; i++) {
-        /* the face across axis k, on its upper side for even i */
-        const int k = i / 2, u = (k + 1) % 3, v = (k + 2) % 3, up = i % 2 == 0;
-        const unsigned base = up ? 1u << k : 0, pu = 1u << u, pv = 1u << v;
-        const unsigned polygon[5] = { 4, base, base | (up ? pu : pv), base | pu | pv, base | (up ? pv : pu) };
-        memcpy(s->polygon + 5 * i, polygon, sizeof polygon);
         for (int j = 0; j < 3; j++)
-            s->plane[4 * i + j] = j == k ? (up ? 1 : -1) : 0;
-        s->plane[4 * i + 3] = half[k];
+            s->plane[4 * i + j] = j == i / 2 ? 1 - 2 * (i % 2) : 0;
+        s->plane[4 * i + 3] = half[i / 2];
     }
 }
 

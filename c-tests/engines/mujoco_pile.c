@@ -60,12 +60,14 @@ static void write_model(int bodies, int multi, int field)
         write_xml("<geom type=\"plane\" size=\"2 2 0.1\"/>");
     for (int i = 0; i < 4; i++) {
         const int sign = i % 2 ? 1 : -1, x = i < 2 ? sign : 0, y = i < 2 ? 0 : sign;
-        write_xml("<geom type=\"plane\" size=\"2 2 .1\" pos=\"%g %g 0\" zaxis=\"%d %d 0\"/>", x * HALF_WIDTH, y * HALF_WIDTH, -x, -y);
+        write_xml("<geom type=\"plane\" size=\"2 2 .1\" pos=\"%g %g 0\" zaxis=\"%d %d 0\"/>", x * HALF_WIDTH, y * HALF_WIDTH, -x,
+                  -y);
     }
     for (int i = 0; i < bodies; i++) {
         uniform_rotation(q);
         pile_place(i, 0.4, at);
-        write_xml("<body pos=\"%.5f %.5f %.5f\" quat=\"%.6f %.6f %.6f %.6f\"><freejoint/>", at[0], at[1], at[2], q[0], q[1], q[2], q[3]);
+        write_xml("<body pos=\"%.5f %.5f %.5f\" quat=\"%.6f %.6f %.6f %.6f\"><freejoint/>", at[0], at[1], at[2], q[0], q[1], q[2],
+                  q[3]);
         switch (i % 5) {
         case 0: write_sizes("ellipsoid", uniform(.05, .13), uniform(.05, .13), uniform(.05, .13)); break;
         case 1: write_sizes("cylinder", uniform(.05, .12), uniform(.05, .12), 0); break;

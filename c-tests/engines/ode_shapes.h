@@ -21,19 +21,9 @@ static inline dGeomID ode_geometry(dSpaceID space, const body_t *b)
     case KIND_PLATE: return dCreateBox(space, 2 * p[0], 2 * p[1], 2 * p[2]);
     case SHAPE_CYLINDER: return dCreateCylinder(space, p[0], 2 * p[1]);
     default:
-        return dCreateConvex(space, b->hull.plane, (unsigned)b->hull.faces, b->hull.vertex, (unsigned)b->hull.vertices, b->hull.polygon);
+        return dCreateConvex(space, b->hull.plane, (unsigned)b->hull.faces, b->hull.vertex, (unsigned)b->hull.vertices,
+                             b->hull.polygon);
     }
-}
-
-/* Returns the shape of a body at the pose of its geometry. */
-static inline shape_t ode_shape(const body_t *b, dGeomID geom)
-{
-    const dReal *p = dGeomGetPosition(geom), *R = dGeomGetRotation(geom);
-    const double rot[9] = { R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10] };
-    shape_t shape = b->shape;
-    shape_move(&shape, p[0], p[1], p[2]);
-    shape_turn(&shape, rot);
-    return shape;
 }
 
 #endif

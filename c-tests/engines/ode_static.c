@@ -8,7 +8,7 @@
  *   corrected: wrong support points of ODE's callbacks are replaced by right ones */
 
 #include "engines/ode_shapes.h"
-#include "tools/compare/hooks.h"
+#include "tools/compare/counts.h"
 #include "harness/identity.h"
 
 /* ODE refers to all of it while the geometry lives. */
@@ -108,12 +108,14 @@ static void query(const pose_truth_t *pose)
     if (b.body.kind == KIND_TRIANGLE)
         pose_judge(&a.body, &b.body, pose, invalid_support, first.hit, first.depth, first.length);
     else
-        pose_judge(&a.body, &b.body, pose, invalid_support, hit, hit ? contact.depth : 0, hit ? dCalcVectorLength3(contact.normal) : 0);
+        pose_judge(&a.body, &b.body, pose, invalid_support, hit, hit ? contact.depth : 0,
+                   hit ? dCalcVectorLength3(contact.normal) : 0);
 }
 
 int main(int argc, char **argv)
 {
-    static const int kinds[] = { SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_POLYTOPE, KIND_TRIANGLE, KIND_PLATE };
+    static const int kinds[] = { SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_POLYTOPE, KIND_TRIANGLE,
+                                 KIND_PLATE };
     if (argc != 4) {
         fprintf(stderr, "usage: ode_static SEED POSES asis|corrected\n");
         return 2;

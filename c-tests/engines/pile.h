@@ -42,7 +42,7 @@ static inline pile_t pile_start(int argc, char **argv, const char *scenes)
     return p;
 }
 
-/* Where body i falls from: three by three in a layer, 0.34 apart. */
+/* Computes the start of body i: three by three in a layer, 0.34 apart. */
 static inline void pile_place(int i, double lowest, double at[3])
 {
     at[1] = 0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02);

@@ -131,15 +131,17 @@ static inline verdict_t tally_add(tally_t *t, const verdict_truth_t *truth, int 
     if (truth->upper > 0)
         t->excess = fmax(t->excess, (above - 2 * truth->tolerance) / truth->upper);
     t->error = fmax(t->error, fmax(above, below));
-    t->off += !(above <= fmax(truth->tolerance, 1e-3 * truth->upper) + truth->contact_eps && below <= truth->tolerance + truth->contact_eps);
+    t->off += !(above <= fmax(truth->tolerance, 1e-3 * truth->upper) + truth->contact_eps
+                && below <= truth->tolerance + truth->contact_eps);
     return v;
 }
 
 static inline void tally_print(const char *line, const tally_t *t)
 {
-    printf("%s queries %ld hits %ld missed %ld spurious %ld broken %ld deep %ld unsound %ld off %ld deepest_miss %.9g excess %.9g "
-           "error %.9g\n", line, t->queries, t->hits, t->wrong[VERDICT_MISSED], t->wrong[VERDICT_SPURIOUS], t->wrong[VERDICT_INVALID],
-           t->wrong[VERDICT_DEEP], t->wrong[VERDICT_UNSOUND], t->off, t->deepest_miss, t->excess, t->error);
+    const long *wrong = t->wrong;
+    printf("%s queries %ld hits %ld missed %ld spurious %ld broken %ld deep %ld unsound %ld", line, t->queries, t->hits,
+           wrong[VERDICT_MISSED], wrong[VERDICT_SPURIOUS], wrong[VERDICT_INVALID], wrong[VERDICT_DEEP], wrong[VERDICT_UNSOUND]);
+    printf(" off %ld deepest_miss %.9g excess %.9g error %.9g\n", t->off, t->deepest_miss, t->excess, t->error);
 }
 
 /* ODE's cylinder callback is wrong for directions within about 1e-15 of the axis: it normalises
@@ -157,12 +159,6 @@ static inline double support_error(const shape_t *s, const ccd_vec3_t *dir, cons
     return fabs(truth_dot3(n, off));
 }
 
-static inline void tally_report(void)
-{
-    tally_print("collide", &tally[0]);
-    tally_print("invalid_support", &tally[1]);
-}
-
 /* --- single queries of every pair of kinds -------------------------------------------- */
 
 /* Signed depths of every placed pair, in sizes, after that of the random pose. */
@@ -177,15 +173,15 @@ static long threw; /* queries in which FCL threw */
 
 /* Counts a result. Where a callback was wrong, none is right, and what is within two tolerances of the
  * true depth will do. */
-static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, int invalid_support, int hit, double depth,
-                              double length)
+static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, int invalid_support, int hit,
+                              double depth, double length)
 {
     const double contact_eps = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size;
     const verdict_truth_t truth = { pose->lower, pose->upper, POSE_TOLERANCE, contact_eps };
     const verdict_t v = tally_add(&tally[invalid_support], &truth, hit, depth, length);
     if (v != VERDICT_RIGHT && !invalid_support)
-        printf("wrong: %s %s %s, signed depth %.9g to %.9g, returned %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind], VERDICT_NAME[v],
-               pose->lower, pose->upper, depth);
+        printf("wrong: %s %s %s, signed depth %.9g to %.9g, returned %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind],
+               VERDICT_NAME[v], pose->lower, pose->upper, depth);
 }
 
 /* Calls `query` for every pose of `poses` pairs of each two kinds, and `make` for every new pair; prints the
@@ -213,7 +209,8 @@ static inline void pose_all(const int *kinds, int count, long poses, body_t *a, 
             queried += tally[0].queries + tally[1].queries > before;
         }
     printf("poses kinds %ld threw %ld\n", queried, threw);
-    tally_report();
+    tally_print("collide", &tally[0]);
+    tally_print("invalid_support", &tally[1]);
 }
 
 #endif

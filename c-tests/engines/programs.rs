@@ -34,7 +34,7 @@ pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
     ("FCL, bodies that drift", "fcl_scene.cpp", "0 300 200 0", 300.0),
 ];
 
-/// What a program printed.
+/// Output of a program.
 pub struct Output {
     pub method: &'static str,
     pub text: String,
@@ -232,14 +232,17 @@ pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
     ]
 }
 
-/// Returns an ODE scene on libccd as ODE queries it, and through this library behind a geometry class of its
-/// own with one contact a pair and with several.
+/// Returns an ODE scene on libccd as ODE queries it, and with geometries that this library collides, with one
+/// contact a pair and with several.
 pub fn ode_world(libccd: Method) -> [Method; 3] {
-    let world = program("ode_world.c").flag("-DOURS_ALONE").link_ours_shared().build().quiet();
+    let world = |contacts| {
+        let program = program("ode_pile.c").flag(format!("-DCONTACTS={contacts}")).flag("-DOURS_ALONE");
+        program.link_ours_shared().build().quiet()
+    };
     [
         libccd,
-        Method::ours("this library, one contact a pair", world.clone()).first("one"),
-        Method::ours("this library, `ccdContacts`", world).first("many"),
+        Method::ours("this library, one contact a pair", world(1)),
+        Method::ours("this library, `ccdContacts`", world(8)),
     ]
 }
 

@@ -99,7 +99,7 @@ fn dart_over_fcl_and_ode() {
     }
 }
 
-/// Towers on several contacts a pair hold at least as well as on libccd's one.
+/// Towers on several contacts a pair gain no more energy and sink no deeper than on libccd's one.
 #[test]
 fn towers_on_several_contacts_a_pair() {
     let [libccd, _] = ours_judged(program("ode_pile.c"));

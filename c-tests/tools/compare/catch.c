@@ -10,7 +10,7 @@
  * (Lua's, in a callback) lies on the stack below the guard. */
 
 #define _GNU_SOURCE
-#include "tools/compare/catch.h"
+#include "tools/compare/compare.h"
 
 #include <dlfcn.h>
 #include <setjmp.h>
@@ -120,7 +120,7 @@ guard_t guard_run(void (*work)(void *), void *argument)
 
 /* --- jumps ------------------------------------------------------------------------ */
 
-/* Whether a frame within the guard filled the buffer. */
+/* Returns whether a frame within the guard filled the buffer. */
 static int stays_within(const void *buffer)
 {
     const char *const here = (const char *)__builtin_frame_address(0);

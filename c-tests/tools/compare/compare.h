@@ -11,7 +11,6 @@
 #ifndef COMPARE_COMPARE_H
 #define COMPARE_COMPARE_H
 
-#include "tools/compare/catch.h"
 #include "tools/compare/counts.h"
 
 #include <time.h>
@@ -57,11 +56,30 @@ void answer_by_length(answer_t *out);
 
 static inline int is_hit(int call, int code) { return code == call_table[call].hit; }
 
-/* Whether the call returns yes or no alone. */
+/* Returns whether the call returns yes or no alone. */
 static inline int is_intersect(int call) { return call_table[call].kind == KIND_BOOLEAN; }
 
 /* Returns the tolerance that the call reads, metres; CCD_INIT's where it is invalid. */
 double query_tolerance(const query_t *q);
+
+/* --- guards (catch.c) ------------------------------------------------------------------ */
+
+/* Runs a function that may throw or jump out of itself, and returns. The tool's own queries must not
+ * leave into the program. */
+typedef enum {
+    GUARD_RETURNED,
+    GUARD_THREW,  /* an exception left it, and is destroyed; destructors have run */
+    GUARD_JUMPED, /* longjmp or siglongjmp to a place outside */
+    GUARD_ENDED   /* guard_end */
+} guard_t;
+
+guard_t guard_run(void (*work)(void *), void *argument);
+
+/* Returns whether this thread is within guard_run. */
+int guard_active(void);
+
+/* Leaves the innermost guard_run. */
+void guard_end(void) __attribute__((noreturn));
 
 /* --- requests ------------------------------------------------------------------------- */
 
@@ -140,7 +158,7 @@ typedef struct {
 } judged_t;
 
 /* Puts a query of the program's to libccd, to this library and to the proven minimum, judges the answers
- * and adds to the counts. own: what the program got; fields that it did not want are NaN. */
+ * and adds to the counts. own: what the program got; fields without an output pointer are NaN. */
 void judge_query(const compare_t *compare, const query_t *q, const answer_t *own);
 
 /* Returns a request that ends within MAX_CALLS calls of the callbacks: a hundred times
@@ -152,7 +170,7 @@ verdict_t answer_verdict(const query_t *q, const answer_t *answer, const verdict
 
 /* write_case.c: writes the answer of one library as a C file if it is among its worst and the file
  * shows it again. */
-void keep_case(const compare_t *compare, const judged_t *s, int side);
+void save_case(const compare_t *compare, const judged_t *s, int side);
 
 /* Nanoseconds. */
 uint64_t clock_now(clockid_t id);

@@ -12,6 +12,7 @@
 #include "harness/this_library.h"
 #include "harness/verdict.h"
 
+#include <ccd/ccd.h>
 #include <stdint.h>
 
 enum { COMPARE_THEIRS, COMPARE_OURS, COMPARE_SIDES };
@@ -42,24 +43,57 @@ typedef struct {
 static const char *const COMPARE_SIDE_NAME[COMPARE_SIDES] = { "libccd", "warmccd" };
 
 /* Cases written, of each library: SIDE-NUMBER.c. */
-enum { COMPARE_KEPT = 5 };
+enum { MAX_SAVED = 5 };
 typedef struct {
     uint64_t used, verdict;
     double score; /* the error, metres a metre of the smaller object */
     char title[192];
-} compare_kept_t;
+} saved_case_t;
 
 typedef struct {
     uint64_t processes;
     char program[256]; /* of the first */
     char theirs[512], ours[512]; /* the libraries */
-    uint64_t base;               /* whose answers the program goes on with */
+    uint64_t base;               /* whose answers the program gets */
     compare_call_t call[LIBCCD_CALL_COUNT];
     uint64_t raw_supports; /* __ccdSupport, which FCL's own GJK calls */
     uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
     uint64_t process_nanoseconds, judge_nanoseconds; /* processor time of all, and of it the tool's */
-    uint64_t keeping; /* a lock */
-    compare_kept_t kept[COMPARE_SIDES][COMPARE_KEPT];
+    uint64_t saving; /* a lock */
+    saved_case_t saved[COMPARE_SIDES][MAX_SAVED];
 } compare_counts_t;
+
+/* --- for the programs ----------------------------------------------------------------- */
+
+/* Programs that compare.sh runs, such as those of engines/, may read the
+ * counts so far, and define, exported (-rdynamic):
+ *
+ *   compare_audit     is called with every support point of the program's queries, and may change it
+ *   compare_queried   is called with the result of every query, and its direction's length */
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *point);
+void compare_queried(int call, int hit, double depth, double length);
+
+/* A function of the tool, which is not there when the program is linked. */
+const compare_counts_t *compare_counts(void) __attribute__((weak));
+
+/* Returns the queries so far; 0 without the tool. */
+static inline unsigned long compare_queries(void)
+{
+    unsigned long n = 0;
+    if (!compare_counts)
+        return 0;
+    for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
+        n += (unsigned long)compare_counts()->call[i].queries;
+    return n;
+}
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

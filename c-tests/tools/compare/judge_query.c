@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Bounds of the depth of a pair of which only support functions are known: every recorded support value
+/* Bounds the depth of a pair given only support functions: every recorded support value
  * is an upper bound of the signed depth that needs no proof; the lower one is
  * that of ccdPenetrationProven, and a support value below it refutes the proof. An answer
  * that is too deep, or a hit of objects that are apart, is thus found without trusting either
@@ -139,11 +139,14 @@ static double inconsistency(const samples_t *samples, int most)
 /* Directions that are checked of each query, and of a query with a wrong answer. */
 enum { CHECKED = 64, ALL = MAX_SAMPLES };
 
-/* Whether the callbacks describe convex shapes, within the tolerance, which changes no verdict. */
+/* Returns whether the callbacks describe convex shapes, within the tolerance, which changes no verdict. */
 static int is_convex(const judged_t *s, int most)
 {
     return inconsistency(s->samples, most) <= fmax(s->truth.tolerance, 10 * s->truth.contact_eps);
 }
+
+/* Returns whether two numbers are equal, or one is NaN: no output of the program. */
+static int same_number(ccd_real_t x, ccd_real_t y) { return x == y || x != x || y != y; }
 
 static int same_answer(int call, const answer_t *a, const answer_t *b)
 {
@@ -151,10 +154,8 @@ static int same_answer(int call, const answer_t *a, const answer_t *b)
         return 0;
     if (!a->hit || is_intersect(call))
         return 1;
-    /* equal bits; NaN: not wanted by the program */
-    return (a->depth == b->depth || a->depth != a->depth || b->depth != b->depth)
-           && ((a->dir.v[0] == b->dir.v[0] && a->dir.v[1] == b->dir.v[1] && a->dir.v[2] == b->dir.v[2]) || a->dir.v[0] != a->dir.v[0]
-               || b->dir.v[0] != b->dir.v[0]);
+    return same_number(a->depth, b->depth) && same_number(a->dir.v[0], b->dir.v[0]) && same_number(a->dir.v[1], b->dir.v[1])
+           && same_number(a->dir.v[2], b->dir.v[2]);
 }
 
 /* A hit by a call that returns the depth. */
@@ -363,7 +364,7 @@ void judge_query(const compare_t *compare, const query_t *q, const answer_t *own
             count_times(compare, &s);
         for (int side = 0; side < COMPARE_SIDES && compare->keep; side++)
             if (s.verdict[side] != VERDICT_RIGHT)
-                keep_case(compare, &s, side);
+                save_case(compare, &s, side);
     }
     free(s.samples);
 }

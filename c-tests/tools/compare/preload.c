@@ -19,7 +19,6 @@
 
 #define _GNU_SOURCE
 #include "tools/compare/compare.h"
-#include "tools/compare/hooks.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -73,7 +72,8 @@ static void forked(void) { time_counted = 0; }
 
 static void start(void)
 {
-    const char *const dir = getenv("CCD_COMPARE_DIR"), *const theirs = getenv("CCD_COMPARE_THEIRS"), *const ours = getenv("CCD_COMPARE_OURS");
+    const char *const theirs = getenv("CCD_COMPARE_THEIRS"), *const ours = getenv("CCD_COMPARE_OURS");
+    const char *const dir = getenv("CCD_COMPARE_DIR");
     const char *const base_name = setting("CCD_COMPARE_BASE", "theirs");
     if (!dir || !theirs || !ours) {
         fputs("compare: to be started by compare.sh\n", stderr);
@@ -128,7 +128,7 @@ static int is_sampled(uint64_t number)
     return every == 1 || (every > 1 && (number ^ (number >> 32)) % every == 0);
 }
 
-/* Reads the program's own outputs, NaN where it wants none. */
+/* Reads the program's own outputs, NaN where it passes no pointer. */
 static void read_outputs(const query_t *q, int code, const ccd_real_t *depth, const ccd_vec3_t *dir, answer_t *own)
 {
     const ccd_real_t nan = (ccd_real_t)NAN;
@@ -191,7 +191,8 @@ static int query_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, c
     return r.answer.code;
 }
 
-static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
+                 ccd_vec3_t *pos)
 {
     const call_args_t rest = {.depth = depth, .dir = dir, .pos = pos};
     const query_t q = { call, { obj1, obj2 }, ccd };
@@ -205,12 +206,14 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
     return code;
 }
 
-EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
+                             ccd_vec3_t *pos)
 {
     return query(CALL_MPR, obj1, obj2, ccd, depth, dir, pos);
 }
 
-EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
+EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
+                             ccd_vec3_t *pos)
 {
     return query(CALL_GJK, obj1, obj2, ccd, depth, dir, pos);
 }

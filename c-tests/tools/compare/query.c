@@ -35,7 +35,8 @@ int library_open(library_t *library, const char *path, int is_ours)
     find_symbol(handle, "ccdPenetrationProven", &library->proven);
     find_symbol(handle, "ccdImplementation", &library->implementation);
     if (missing || (library->proven != NULL) != is_ours) {
-        fprintf(stderr, "compare: %s is %s\n", path, missing ? "no libccd" : is_ours ? "not this library" : "this library, not libccd");
+        const char *what = missing ? "no libccd" : is_ours ? "not this library" : "this library, not libccd";
+        fprintf(stderr, "compare: %s is %s\n", path, what);
         return -1;
     }
     return 0;

@@ -115,7 +115,8 @@ static void case_query(const case_t *c, verdict_answer_t *answer, ccd_vec3_t *di
 /* Queries the library and prints its answer and the truth; returns 1 if the answer is wrong. */
 static int case_run(const case_t *c)
 {
-    static const char *const name[] = { "ccdMPRPenetration", "ccdMPRIntersect", "ccdGJKPenetration", "ccdGJKSeparate", "ccdGJKIntersect" };
+    static const char *const name[] = { "ccdMPRPenetration", "ccdMPRIntersect", "ccdGJKPenetration", "ccdGJKSeparate",
+                                        "ccdGJKIntersect" };
     verdict_answer_t answer;
     ccd_vec3_t dir;
     case_query(c, &answer, &dir);
@@ -125,7 +126,8 @@ static int case_run(const case_t *c)
     if (answer.hit && answer.has_depth)
         printf(", depth %.9g along (%.6g, %.6g, %.6g)", answer.depth, (double)dir.v[0], (double)dir.v[1], (double)dir.v[2]);
     printf(": %s\n", VERDICT_NAME[v]);
-    printf("truth: signed depth at most %.9g (along (%.6g, %.6g, %.6g))", c->truth.upper, c->truth_dir[0], c->truth_dir[1], c->truth_dir[2]);
+    printf("truth: signed depth at most %.9g (along (%.6g, %.6g, %.6g))", c->truth.upper, c->truth_dir[0],
+           c->truth_dir[1], c->truth_dir[2]);
     if (c->truth.lower > -DBL_MAX)
         printf(", at least %.9g", c->truth.lower);
     printf("; tolerance %.3g\n", c->truth.tolerance);

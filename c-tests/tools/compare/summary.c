@@ -3,7 +3,7 @@
 
 /* Prints the counts of all processes at the end of a run.
  *
- * usage: screen DIR EVERY EXIT KEPT   the screen; KEPT: the folder of wrong answers, or empty
+ * usage: screen DIR EVERY EXIT SAVED   the screen; SAVED: the folder of wrong answers, or empty
  *        screen DIR fields            `counted key value key value ...`, for the tables of engines/ */
 
 #include "tools/compare/counts.h"
@@ -95,31 +95,33 @@ static void break_even(const compare_call_t *c, char *out, size_t size)
 
 static void print_side(const char *name, const compare_side_t *s, const compare_call_t *c)
 {
-    printf("%-20s %7s %6s %7s %7s %8s %8.3g %8.3g %9.2f %7.0f", name, thousands(s->verdict[VERDICT_MISSED]),
-           thousands(s->verdict[VERDICT_SPURIOUS]), thousands(s->verdict[VERDICT_INVALID]), thousands(s->verdict[VERDICT_DEEP]),
-           thousands(s->verdict[VERDICT_UNSOUND]), 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
+    const uint64_t *v = s->verdict;
+    printf("%-20s %7s %6s %7s %7s %8s", name, thousands(v[VERDICT_MISSED]), thousands(v[VERDICT_SPURIOUS]),
+           thousands(v[VERDICT_INVALID]), thousands(v[VERDICT_DEEP]), thousands(v[VERDICT_UNSOUND]));
+    printf(" %8.3g %8.3g %9.2f %7.0f", 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
            0.5 * part(s->calls, c->judged), part(s->nanoseconds, c->timed));
 }
 
 static void print_wrong(const compare_call_t *c, const char *call)
 {
     char even[48];
-    printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s  %s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um", "max um",
-           "supports", "ns", "faster");
+    printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s  %s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um",
+           "max um", "supports", "ns", "faster");
     print_side("libccd", &c->side[COMPARE_THEIRS], c);
     printf("\n");
     print_side("this library", &c->side[COMPARE_OURS], c);
     break_even(c, even, sizeof even);
     printf("  %s\n", even);
-    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged), part(c->minimum_nanoseconds, c->timed));
+    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged),
+           part(c->minimum_nanoseconds, c->timed));
 }
 
 /* Prints why queries were not judged, and faults of the callbacks. */
 static void print_notes(const compare_call_t *sum)
 {
     if (sum->no_shape)
-        printf("%s queries were about no convex shape (a callback returns a point that is not the farthest in its direction, or the\n"
-               "  centre lies outside): no answer can be right there, none was judged\n",
+        printf("%s queries were about no convex shape (a callback returns a point that is not the farthest in its direction,\n"
+               "  or the centre lies outside): no answer can be right there, none was judged\n",
                thousands(sum->no_shape));
     if (sum->memory)
         printf("%s queries were answered differently when repeated: callbacks with memory. The calls made for this screen may\n"
@@ -129,7 +131,8 @@ static void print_notes(const compare_call_t *sum)
         printf("%s queries were not judged: when repeated, a callback threw or jumped, or returned NaN\n",
                thousands(sum->threw));
     if (sum->endless)
-        printf("%s queries were not judged: a library did not end within 100,000 calls of the callbacks\n", thousands(sum->endless));
+        printf("%s queries were not judged: a library did not end within 100,000 calls of the callbacks\n",
+               thousands(sum->endless));
     if (sum->contradicted)
         printf("%s proofs of this library were wrong: a support value lies below their bound. Please report them.\n",
                thousands(sum->contradicted));
@@ -144,14 +147,14 @@ static void print_price(const compare_call_t *sum)
     if (!sum->timed || !all.callback_pairs)
         return;
     price(text, sizeof text, part(all.callback_nanoseconds, all.callback_pairs));
-    printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n", text,
-           ratio < 1 ? "faster" : "slower", ratio);
+    printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n",
+           text, ratio < 1 ? "faster" : "slower", ratio);
     if (all.process_nanoseconds > all.judge_nanoseconds) {
         const double own = (double)(all.process_nanoseconds - all.judge_nanoseconds), queries = (double)sum->queries;
         const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
         const double other = queries * part(sum->side[1 - all.base].nanoseconds, sum->timed) / own;
-        printf("  Queries are %.1f %% of this program's %.2f s; on %s the program would take %+.1f %%.\n", 100 * share, 1e-9 * own,
-               all.base == COMPARE_THEIRS ? "this library" : "libccd", 100 * (other - share));
+        printf("  Queries are %.1f %% of this program's %.2f s; on %s the program would take %+.1f %%.\n", 100 * share,
+               1e-9 * own, all.base == COMPARE_THEIRS ? "this library" : "libccd", 100 * (other - share));
     }
 }
 
@@ -160,9 +163,11 @@ static void print_change(const compare_call_t *sum)
     const compare_side_t *theirs = &sum->side[COMPARE_THEIRS];
     if (!sum->judged)
         return;
-    printf("What the swap changes, of %s judged: %s hits more, %s fewer", thousands(sum->judged), thousands(sum->found), thousands(sum->gone));
+    printf("What the swap changes, of %s judged: %s hits more, %s fewer", thousands(sum->judged), thousands(sum->found),
+           thousands(sum->gone));
     if (sum->both)
-        printf("; of %s common hits %.1f %% of libccd's depths\n  are more than 1 %% deeper, %.1f %% of the directions differ by more than 10 degrees",
+        printf("; of %s common hits %.1f %% of libccd's depths\n"
+               "  are more than 1 %% deeper, %.1f %% of the directions differ by more than 10 degrees",
                thousands(sum->both), 100 * part(sum->deeper, sum->both), 100 * part(sum->turned, sum->both));
     printf(".\n");
     if (theirs->verdict[VERDICT_INVALID])
@@ -170,13 +175,13 @@ static void print_change(const compare_call_t *sum)
                thousands(theirs->verdict[VERDICT_INVALID]));
 }
 
-static void print_kept(const char *dir)
+static void print_saved(const char *dir)
 {
     int none = 1;
     for (int side = 0; side < COMPARE_SIDES; side++)
-        for (int i = 0; i < COMPARE_KEPT; i++)
-            if (all.kept[side][i].used) {
-                printf("%s/%s-%d.c %s\n", dir, COMPARE_SIDE_NAME[side], i + 1, all.kept[side][i].title);
+        for (int i = 0; i < MAX_SAVED; i++)
+            if (all.saved[side][i].used) {
+                printf("%s/%s-%d.c %s\n", dir, COMPARE_SIDE_NAME[side], i + 1, all.saved[side][i].title);
                 none = 0;
             }
     if (none)
@@ -225,11 +230,13 @@ static void print_fields(void)
     for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
         add_call(&sum, &all.call[i]);
     printf("counted");
-    print_numbers("", "queries returned hits broken sampled judged overlaps timed threw endless memory no_shape contradicted", &sum);
+    print_numbers("", "queries returned hits broken sampled judged overlaps timed threw endless memory no_shape contradicted",
+                  &sum);
     for (int i = 0; i < COMPARE_SIDES; i++) {
         const compare_side_t *s = &sum.side[i];
         print_numbers(name[i], "right missed spurious broken deep unsound hits calls slanted aside", s);
-        printf(" %ssupports %llu %serror_max %.9g", name[i], (unsigned long long)(s->calls + 1) / 2, name[i], PICO * (double)s->error_max);
+        printf(" %ssupports %llu %serror_max %.9g", name[i], (unsigned long long)(s->calls + 1) / 2, name[i],
+               PICO * (double)s->error_max);
     }
     printf("\n");
 }
@@ -239,7 +246,7 @@ int main(int argc, char **argv)
 {
     char path[4096];
     if (argc != 3 && argc != 5) {
-        fprintf(stderr, "usage: screen DIR EVERY EXIT KEPT | screen DIR fields\n");
+        fprintf(stderr, "usage: screen DIR EVERY EXIT SAVED | screen DIR fields\n");
         return 2;
     }
     snprintf(path, sizeof path, "%s/counts", argv[1]);
@@ -253,7 +260,7 @@ int main(int argc, char **argv)
     else if (all.processes) {
         print_screen(argv[2], argv[3]);
         if (*argv[4])
-            print_kept(argv[4]);
+            print_saved(argv[4]);
     }
     return all.processes ? 0 : 3;
 }

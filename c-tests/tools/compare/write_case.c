@@ -33,24 +33,24 @@ static double score_of(const judged_t *s, int side)
 
 /* Returns the slot of the case: a free one, that of a similar case, or that of the least wrong;
  * NULL if it is less wrong than those. Frame after frame a resting pair is wrong in the same way. */
-static compare_kept_t *find_slot(compare_kept_t *kept, int verdict, double score)
+static saved_case_t *find_slot(saved_case_t *saved, int verdict, double score)
 {
-    compare_kept_t *least = NULL;
-    for (int i = 0; i < COMPARE_KEPT; i++)
-        if (kept[i].used && kept[i].verdict == (uint64_t)verdict && fabs(score - kept[i].score) <= 0.1 * kept[i].score)
-            return score > kept[i].score ? &kept[i] : NULL;
-    for (int i = 0; i < COMPARE_KEPT; i++) {
-        if (!kept[i].used)
-            return &kept[i];
-        if (!least || kept[i].score < least->score)
-            least = &kept[i];
+    saved_case_t *least = NULL;
+    for (int i = 0; i < MAX_SAVED; i++)
+        if (saved[i].used && saved[i].verdict == (uint64_t)verdict && fabs(score - saved[i].score) <= 0.1 * saved[i].score)
+            return score > saved[i].score ? &saved[i] : NULL;
+    for (int i = 0; i < MAX_SAVED; i++) {
+        if (!saved[i].used)
+            return &saved[i];
+        if (!least || saved[i].score < least->score)
+            least = &saved[i];
     }
     return score > least->score ? least : NULL;
 }
 
 /* --- the case ------------------------------------------------------------------------ */
 
-/* Whether the library's answer to the case is wrong in the same way. */
+/* Returns whether the library's answer to the case is wrong in the same way. */
 static int shows_fault(const compare_t *compare, const judged_t *s, int side, const case_t *c)
 {
     case_object_t object[2];
@@ -118,11 +118,12 @@ static void write_numbers(FILE *f, const case_t *c)
         }
         fputs("};\n", f);
     }
-    fprintf(f, "\nstatic const case_t the_case = {\n    \"%s\",\n    %d, {%d, %d}, {samples1, samples2},\n", c->title, c->call, c->count[0],
-            c->count[1]);
-    fprintf(f, "    %d, {" VECTOR ", " VECTOR "}, " VECTOR ",\n    %luul,\n", c->has_centres, COMPONENTS(c->centre[0]), COMPONENTS(c->centre[1]),
-            COMPONENTS(c->first_dir), c->max_iterations);
-    fprintf(f, "    {%.17g, %.17g, %.17g, %.17g}, " VECTOR ",\n};\n", t->lower, t->upper, t->tolerance, t->contact_eps, COMPONENTS(c->truth_dir));
+    fprintf(f, "\nstatic const case_t the_case = {\n    \"%s\",\n", c->title);
+    fprintf(f, "    %d, {%d, %d}, {samples1, samples2},\n    %d, ", c->call, c->count[0], c->count[1], c->has_centres);
+    fprintf(f, "{" VECTOR ", " VECTOR "}, ", COMPONENTS(c->centre[0]), COMPONENTS(c->centre[1]));
+    fprintf(f, VECTOR ",\n    %luul,\n", COMPONENTS(c->first_dir), c->max_iterations);
+    fprintf(f, "    {%.17g, %.17g, %.17g, %.17g}, ", t->lower, t->upper, t->tolerance, t->contact_eps);
+    fprintf(f, VECTOR ",\n};\n", COMPONENTS(c->truth_dir));
     fputs("\nint main(void) { return case_run(&the_case); }\n", f);
 }
 
@@ -139,21 +140,23 @@ static int write_case(const compare_t *compare, const case_t *c, const char *pat
             " *\n"
             " * The objects are the points that their support functions returned, direction by direction, at the end. */\n\n",
             c->title);
-    int bad = copy_header(f, compare->case_source, "harness/verdict.h") | copy_header(f, compare->case_source, "tools/compare/replay_case.h");
+    int bad = copy_header(f, compare->case_source, "harness/verdict.h");
+    bad |= copy_header(f, compare->case_source, "tools/compare/replay_case.h");
     write_numbers(f, c);
     return fclose(f) | bad;
 }
 
-static void keep_in(const compare_t *compare, const judged_t *s, int side, compare_kept_t *slot, double score)
+static void save_in(const compare_t *compare, const judged_t *s, int side, saved_case_t *slot, double score)
 {
     char title[sizeof slot->title], path[4096], depth[32] = "";
     case_t c = make_case(s);
     if (s->answer[side].hit)
         snprintf(depth, sizeof depth, "depth %.6g, ", (double)s->answer[side].depth);
-    snprintf(title, sizeof title, "%s of %s, %s: %sthe signed depth is at most %.6g", call_table[s->q->call].name, COMPARE_SIDE_NAME[side],
-             VERDICT_NAME[s->verdict[side]], depth, s->truth.upper);
+    snprintf(title, sizeof title, "%s of %s, %s: %sthe signed depth is at most %.6g", call_table[s->q->call].name,
+             COMPARE_SIDE_NAME[side], VERDICT_NAME[s->verdict[side]], depth, s->truth.upper);
     c.title = title;
-    snprintf(path, sizeof path, "%s/%s-%d.c", compare->keep, COMPARE_SIDE_NAME[side], (int)(slot - compare->counts->kept[side]) + 1);
+    snprintf(path, sizeof path, "%s/%s-%d.c", compare->keep, COMPARE_SIDE_NAME[side],
+             (int)(slot - compare->counts->saved[side]) + 1);
     if (shows_fault(compare, s, side, &c) && write_case(compare, &c, path) == 0) {
         slot->used = 1;
         slot->verdict = (uint64_t)s->verdict[side];
@@ -162,15 +165,16 @@ static void keep_in(const compare_t *compare, const judged_t *s, int side, compa
     }
 }
 
-void keep_case(const compare_t *compare, const judged_t *s, int side)
+void save_case(const compare_t *compare, const judged_t *s, int side)
 {
     compare_counts_t *counts = compare->counts;
     const double score = score_of(s, side);
     /* One at a time; another thread's case is dropped rather than waited for, under a callback's lock */
-    if (!(score >= 0) || !s->samples->count[0] || !s->samples->count[1] || __atomic_exchange_n(&counts->keeping, 1, __ATOMIC_ACQUIRE))
+    if (!(score >= 0) || !s->samples->count[0] || !s->samples->count[1]
+        || __atomic_exchange_n(&counts->saving, 1, __ATOMIC_ACQUIRE))
         return;
-    compare_kept_t *slot = find_slot(counts->kept[side], s->verdict[side], score);
+    saved_case_t *slot = find_slot(counts->saved[side], s->verdict[side], score);
     if (slot)
-        keep_in(compare, s, side, slot, score);
-    __atomic_store_n(&counts->keeping, 0, __ATOMIC_RELEASE);
+        save_in(compare, s, side, slot, score);
+    __atomic_store_n(&counts->saving, 0, __ATOMIC_RELEASE);
 }
