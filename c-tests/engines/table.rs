@@ -38,7 +38,8 @@ fn single_queries() {
 }
 
 fn long() {
-    let [ode, mujoco, dart] = ["ode_pile.c", "mujoco_pile.c", "dart_pile.cpp"].map(|file| compared(program(file), "1"));
+    let [ode, mujoco, dart] =
+        ["ode_pile.c", "mujoco_pile.c", "dart_pile.cpp"].map(|file| compared(program(file), "10"));
     let rows = [
         swapped("ODE, pile", &ode, 8, 5000, "32 pile"),
         swapped("ODE, convex hulls", &ode, 8, 5000, "32 hulls"),
@@ -73,7 +74,7 @@ fn steps() {
 fn world() {
     let rows: [Simulation; 3] =
         [("stack", 20, 10_000), ("hulls", 32, 3000), ("roll", 12, 3000)].map(|(scene, bodies, steps)| {
-            let [libccd, _] = compared(program("ode_pile.c"), "1");
+            let [libccd, _] = compared(program("ode_pile.c"), "10");
             results::world(libccd, scene, 10, steps, bodies)
         });
     println!("{}", results::simulation_table(&rows));
