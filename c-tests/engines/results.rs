@@ -313,17 +313,18 @@ impl Simulation {
     }
 }
 
-/// Returns a row for each simulation and method; medians of energies and lengths.
+/// Returns a row for each simulation and method; medians of the starts but for the deepest contact of all.
 pub fn simulation_table(simulations: &[Simulation]) -> String {
     type Row<'a> = (&'a Simulation, &'a [Output]);
     let rows: Vec<Row> = simulations.iter().flat_map(|s| s.runs.iter().map(move |runs| (s, runs.as_slice()))).collect();
     let sum = |(_, runs): &Row, key| values(runs, key).iter().sum::<f64>();
-    let columns: [Column<Row>; 7] = [
+    let columns: [Column<Row>; 8] = [
         ("scene", &|(s, _)| s.scene.clone()),
         ("starts × steps", &|(s, runs)| format!("{} × {}", runs.len(), s.steps)),
         ("library", &|(_, runs)| runs[0].method.to_owned()),
         ("energy gained, J", &|(_, runs)| format!("{:.3}", median(runs, "pile.gained"))),
         ("deepest contact, mm", &|(_, runs)| format!("{:.1}", 1e3 * median(runs, "pile.deepest"))),
+        ("of all starts", &|(_, runs)| format!("{:.1}", 1e3 * range(runs, "pile.deepest").1)),
         ("supports a query", &|row| format!("{:.1}", sum(row, "own.supports") / sum(row, "own.queries"))),
         ("> 1 % too deep", &|row| match row.1[0].get("own.deep") {
             None => String::new(),
