@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Prints which library each kind of link really gives.
+/* Prints the library that each kind of link gives.
  * -DLINK_BOTH: the system's libccd, by a function it has, and this library under its renamed
  * symbols. */
 

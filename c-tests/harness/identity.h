@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Which libccd.so.2 this process runs on: what ccdImplementation says, a
+/* The libccd.so.2 that this process runs on: the result of ccdImplementation, a
  * function only this repository's library has, or NULL on any other libccd. */
 
 #ifndef C_TESTS_IDENTITY_H
@@ -21,7 +21,7 @@ static inline const char *running_ccd(void)
     return symbol == NULL ? NULL : implementation();
 }
 
-/* A program's first line, by which its driver knows what it ran on. */
+/* Prints a program's first line, by which its driver knows the library. */
 static inline void print_library(void)
 {
     const char *name = running_ccd();

@@ -22,11 +22,11 @@ typedef struct {
     double *records;
 } pair_set_t;
 
-/* Truth and start directions of one pose; depth is certified to within gap. */
+/* The certified depth of one pose, to within gap, and start directions. */
 typedef struct {
     double depth, gap;
-    double normal[3]; /* the way b leaves */
-    double init5[3], init25[3], init45[3]; /* starts that far (degrees) from normal */
+    double normal[3]; /* b leaves along it */
+    double init5[3], init25[3], init45[3]; /* so many degrees from normal */
     double cold[3];   /* the centre difference */
 } pair_truth_t;
 
@@ -67,7 +67,7 @@ static inline void pair_set_free(pair_set_t *set)
     memset(set, 0, sizeof *set);
 }
 
-/* Returns 0, or -1 when the file is not a whole pair set; free either way. */
+/* Returns 0, or -1 when the file is no complete pair set; free it in both cases. */
 static inline int pair_set_read(const char *path, pair_set_t *set)
 {
     char magic[8];
@@ -91,7 +91,7 @@ static inline int pair_set_read(const char *path, pair_set_t *set)
     return bad ? -1 : 0;
 }
 
-/* Pose i: the two placed shapes and, unless truth is NULL, what is known of it. */
+/* Writes the two placed shapes of pose i and, unless truth is NULL, its certified depth. */
 static inline void pair_set_pose(const pair_set_t *set, int i, shape_t *a, shape_t *b, pair_truth_t *truth)
 {
     const double *r = set->records + (size_t)PAIR_RECORD * (size_t)i;

@@ -4,9 +4,9 @@
 /* Convex shapes for the C tests, as support functions over <ccd/ccd.h>. Header
  * only, C99 and C++11, computes in ccd_real_t.
  *
- * A shape is a value: copy it, place it, hand its address to a query. Its
- * support function writes into it (it counts its calls), as callbacks in the field
- * do. Only polytopes refer to memory that they do not own: their vertices. */
+ * A shape is a value: copy it, place it, pass its address to a query. Its
+ * support function counts its calls in it. Only polytopes refer to memory that
+ * they do not own: their vertices. */
 
 #ifndef TESTS_SHAPES_H
 #define TESTS_SHAPES_H
@@ -33,10 +33,9 @@ typedef enum {
 
 enum { SHAPE_TYPES = SHAPE_POLYTOPE + 1 };
 
-/* Which point a face or an edge answers with when the direction is exactly
- * perpendicular to it. */
+/* The support point of a face or an edge that is exactly perpendicular to the direction. */
 enum {
-    SHAPE_TIE_SIGN,  /* the vertex that the sign of the zero names, +0 and -0 apart */
+    SHAPE_TIE_SIGN,  /* the vertex by the sign of the zero, +0 or -0 */
     SHAPE_TIE_CENTRE /* the middle of the tied face or edge */
 };
 
@@ -54,7 +53,7 @@ typedef struct {
 
 /* --- making and placing ---------------------------------------------------- */
 
-/* Of any type but SHAPE_POLYTOPE; a type that has fewer sizes does not look at the others. */
+/* Makes a shape of any type but SHAPE_POLYTOPE; types with fewer sizes ignore the others. */
 static inline shape_t shape_make(int type, double p0, double p1, double p2)
 {
     shape_t s;
@@ -74,7 +73,7 @@ static inline shape_t shape_cylinder(double r, double half) { return shape_make(
 static inline shape_t shape_cone(double r, double half) { return shape_make(SHAPE_CONE, r, half, 0); }
 static inline shape_t shape_ellipsoid(double x, double y, double z) { return shape_make(SHAPE_ELLIPSOID, x, y, z); }
 
-/* The hull of n points; verts must outlive the shape. */
+/* Makes the hull of n points; verts must outlive the shape. */
 static inline shape_t shape_polytope(const ccd_real_t *verts, int n)
 {
     shape_t s = shape_make(SHAPE_POLYTOPE, 0, 0, 0);
@@ -141,7 +140,7 @@ static inline void rotation_times(const double a[9], const double b[9], double o
             out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
-/* Turned about the world's origin from where it is, and then moved. */
+/* Rotates the shape about the world's origin, and then moves it. */
 static inline void shape_turn_by(shape_t *s, const double rot[9], double x, double y, double z)
 {
     double old[9], all[9], p[3];
@@ -156,7 +155,7 @@ static inline void shape_turn_by(shape_t *s, const double rot[9], double x, doub
 
 /* --- the callbacks ---------------------------------------------------------- */
 
-/* h with the sign of d; at zero what the tie rule says. */
+/* Returns h with the sign of d; at zero by the tie rule. */
 static inline ccd_real_t shape_toward(ccd_real_t d, ccd_real_t h, int tie)
 {
     if (d > 0)
@@ -269,7 +268,7 @@ static inline void shape_local_support(shape_t *s, const ccd_real_t d[3], ccd_re
     }
 }
 
-/* Local point to world. */
+/* Transforms a local point to the world. */
 static inline void shape_to_world(const shape_t *s, const ccd_real_t v[3], ccd_real_t out[3])
 {
     const ccd_real_t *r = s->rot;
@@ -299,7 +298,7 @@ static inline void shape_center(const void *obj, ccd_vec3_t *out)
     shape_to_world(s, s->centre, out->v);
 }
 
-/* A ccd_t for two shapes, as CCD_INIT leaves it otherwise. */
+/* Returns the settings of CCD_INIT with the callbacks of two shapes. */
 static inline ccd_t shape_query(void)
 {
     ccd_t ccd;

@@ -1,11 +1,11 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How a test names this library's functions.
+/* Names of this library's functions in tests, and calls by number.
  *
- * A program that holds system libccd beside this library links this one's archive
+ * A program that links system libccd beside this library links this one's archive
  * with every symbol renamed to rs_...: OURS(ccdMPRPenetration) is then
- * rs_ccdMPRPenetration, and the plain name is libccd's. A program that holds this
+ * rs_ccdMPRPenetration, and the plain name is libccd's. A program that links this
  * library alone (also every single-precision one: Debian's libccd is double) is
  * compiled with -DOURS_ALONE, and OURS(name) is the plain name. */
 
@@ -25,7 +25,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-/* Each of its plain name's type. */
 #define DECLARE(name, traits) extern __typeof__(name) rs_##name;
 #define DECLARE_PAIR_CALL(name, word, kind, traits) DECLARE(name, traits)
 PAIR_CALLS(DECLARE_PAIR_CALL)
@@ -64,7 +63,7 @@ typedef struct {
     const char *name;
     int number; /* of call_library */
     int kind, traits;
-    int hit, miss, bad; /* what it returns */
+    int hit, miss, bad; /* return codes */
 } call_t;
 
 static const call_t call_table[] = {
@@ -73,10 +72,10 @@ static const call_t call_table[] = {
 #undef CALL_ROW
 };
 
-/* Arguments and outputs of a call besides the objects and their ccd_t; each uses its part. */
+/* Arguments and outputs of all calls besides the objects and their ccd_t. */
 typedef struct {
     ccd_warm_t *warm;
-    const ccd_vec3_t *along; /* or the plane's, the contacts' normal */
+    const ccd_vec3_t *along; /* or the normal of the plane, of the contacts */
     ccd_real_t margin1, margin2, max_distance, slop;
     unsigned want;
     int max;

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Every bound that a comparison in these tests allows, in one place, with the
- * reason why it is not smaller. Numbers are relative to what the name says. */
+/* All tolerances of comparisons in these tests, each with the reason why it is not
+ * smaller. Numbers are relative. */
 
 #ifndef TESTS_TOLERANCES_H
 #define TESTS_TOLERANCES_H
@@ -20,7 +20,7 @@
       "tolerance of a tight query relative to the size: a thousandth of the 1e-6 that " \
       "configurations are judged to; in single what eight bits above rounding leave") \
     X(MPR, 1e-3, 1e-3, \
-      "part of its depth by which an answer of MPR may be above the least: its promise") \
+      "part of its depth by which an answer of MPR may be above the least: its guarantee") \
     X(MPR_CAPPED, 1e-2, 1e-2, \
       "the same where MPR's support points were used up: nearly concentric round objects") \
     X(TABLE, 1e-2, 1e-2, \
@@ -53,10 +53,10 @@ static inline double tolerance(int name)
     return bounds[name][sizeof(ccd_real_t) == sizeof(float)];
 }
 
-/* Distance from 1 to the next ccd_real_t. */
+/* Returns the distance from 1 to the next ccd_real_t. */
 static inline double real_eps(void) { return sizeof(ccd_real_t) == sizeof(float) ? FLT_EPSILON : DBL_EPSILON; }
 
-/* Effect of rounding alone on a depth between these shapes, metres. */
+/* Returns the rounding error of a depth between these shapes, metres. */
 static inline double pair_noise(const shape_t *a, const shape_t *b)
 {
     return tolerance(TOL_ULPS) * real_eps() * largest_coordinate(a, b);

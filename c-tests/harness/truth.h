@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The exact answer that every test is judged by.
+/* The exact signed depth that every test is judged by.
  *
  * With D = A - B and its support value h(n) = max over D of n.x, the signed depth
  * is the minimum of h over all unit n: the penetration depth when the shapes
@@ -23,9 +23,7 @@
  * n = (sum l_i n_i) / |sum l_i n_i| with |..| <= 1). g is the best combination of
  * the three corners' support points, a matrix game of three rows and columns. The
  * error of that bound falls with the square of the triangle. Triangles are split
- * in four, the one with the least bound first, until the bounds meet.
- *
- * Also here: the depth along a given direction, by Newton's steps. */
+ * in four, the one with the least bound first, until the bounds meet. */
 
 #ifndef TESTS_TRUTH_H
 #define TESTS_TRUTH_H
@@ -39,7 +37,7 @@ enum { TRUTH_ENUMERATED = 32 };
 typedef struct {
     double depth;  /* upper bound of the signed depth, attained by n */
     double lower;  /* proven lower bound; equal to depth within rounding if enumerated */
-    double n[3];   /* unit: the way B leaves */
+    double n[3];   /* unit: B leaves along it */
     int enumerated;
 } truth_t;
 
@@ -55,7 +53,7 @@ static inline void truth_cross3(const double a[3], const double b[3], double out
 
 /* --- support in full precision ---------------------------------------------- */
 
-/* Support point of one shape in double, relative to origin, for unit w. */
+/* Writes the support point of one shape in double, relative to origin, for unit w. */
 static inline void truth_support(const shape_t *s, const double origin[3], const double w[3], double out[3])
 {
     double d[3], v[3] = {0, 0, 0}, p[3], l;
@@ -119,7 +117,7 @@ static inline void truth_support(const shape_t *s, const double origin[3], const
             + (double)s->rot[3 * i + 2] * v[2] + ((double)s->pos[i] - origin[i]);
 }
 
-/* Support point of D = A - B in unit direction n. */
+/* Writes the support point of D = A - B in unit direction n. */
 static inline void truth_difference_support(const shape_t *a, const shape_t *b, const double n[3], double out[3])
 {
     double origin[3], m[3], x[3], y[3];
@@ -133,7 +131,7 @@ static inline void truth_difference_support(const shape_t *a, const shape_t *b, 
         out[i] = x[i] - y[i];
 }
 
-/* h(n) for a direction of any length but zero, per unit length. */
+/* Returns h(n) per unit length, for a direction of any length but zero. */
 static inline double truth_support_value(const shape_t *a, const shape_t *b, const double dir[3])
 {
     double n[3], s[3], l = sqrt(truth_dot3(dir, dir));
@@ -143,7 +141,7 @@ static inline double truth_support_value(const shape_t *a, const shape_t *b, con
     return truth_dot3(n, s);
 }
 
-/* Radius of a ball about the shape's position that holds it. */
+/* Returns the radius of a ball about the shape's position that encloses it. */
 static inline double shape_reach(const shape_t *s)
 {
     double p0 = (double)s->p[0], p1 = (double)s->p[1], p2 = (double)s->p[2], most = 0;
@@ -203,7 +201,7 @@ static inline void truth_minus(const truth_real a[3], const truth_real b[3], tru
     out[2] = a[2] - b[2];
 }
 
-/* Unit a x b; 0 when they are parallel as far as long double can tell. */
+/* Writes unit a x b. Returns 0 when they are parallel within long double. */
 static inline int truth_cross(const truth_real a[3], const truth_real b[3], truth_real out[3])
 {
     truth_real l, scale = sqrtl(truth_dot(a, a) * truth_dot(b, b));
@@ -229,7 +227,7 @@ static inline void truth_add_edge(truth_core_t *c, int i, int j)
     c->ne++;
 }
 
-/* The vertices and the ball of a shape that is both together; 0 when it is none. */
+/* Splits a shape into a polytope's vertices and a ball. Returns 0 for a shape that is no such sum. */
 static inline int truth_vertices(const shape_t *s, const ccd_real_t origin[3], truth_core_t *c)
 {
     truth_real local[TRUTH_ENUMERATED][3];
@@ -280,7 +278,7 @@ typedef struct {
     truth_real best, n[3], rho;
 } truth_search_t;
 
-/* Takes n (unit) as a candidate. Leaves early once it cannot be the best. */
+/* Takes unit n as a candidate. Returns early once it cannot be the best. */
 static inline void truth_try(truth_search_t *t, const truth_real n[3])
 {
     const truth_real limit = t->best - t->rho;
@@ -314,7 +312,8 @@ static inline void truth_try_both(truth_search_t *t, const truth_real n[3])
 
 /* Finds the edges of a core's hull and takes the normals of its faces as candidates: of the planes through
  * three vertices that have all others on one side, within 1e-9 of the size (a face too many does no harm).
- * Where there is no such plane (segment, point) every pair of vertices is an edge. */
+ * Where there is no such plane (segment, point) every pair of vertices is an edge; a point has one of
+ * length 0. */
 static inline void truth_faces(truth_search_t *t, truth_core_t *c)
 {
     truth_real size = 0, d[3], e[3], n[3];
@@ -345,12 +344,12 @@ static inline void truth_faces(truth_search_t *t, truth_core_t *c)
                 truth_add_edge(c, j, k);
             }
     for (int i = 0; i < c->nv && !c->has_faces; i++)
-        for (int j = i + 1; j < c->nv; j++)
+        for (int j = c->nv > 1 ? i + 1 : 0; j < c->nv; j++)
             truth_add_edge(c, i, j);
 }
 
-/* The point of segment p q nearest to the origin, if nearer than all before. */
-static inline void truth_nearest(const truth_real p[3], const truth_real q[3], truth_real *least, truth_real point[3])
+/* Writes the point of segment p q closest to the origin, if closer than all before. */
+static inline void truth_closest(const truth_real p[3], const truth_real q[3], truth_real *least, truth_real point[3])
 {
     truth_real d[3], c[3], t, l;
     truth_minus(q, p, d);
@@ -391,7 +390,7 @@ static inline void truth_enumerate(truth_search_t *t)
                 if (-x < t->best - t->rho)
                     truth_try(t, q);
             }
-            /* parallel edges of a core that is itself flat: across their plane */
+            /* edges of cores in one plane: its normal, and the normal of the edge in it */
             truth_minus(a->v[a->e[i][0]], b->v[b->e[j][0]], p);
             if (truth_cross(d, p, n)) {
                 truth_try_both(t, n);
@@ -400,8 +399,7 @@ static inline void truth_enumerate(truth_search_t *t)
             }
         }
     }
-    /* a core that is a segment or a point has directions across it that no pair of
-     * edges names */
+    /* a core without faces: directions normal to its edges, which no pair of edges may have */
     for (int j = 0; j < 2 && !(a->has_faces && b->has_faces); j++) {
         const truth_core_t *c = j ? b : a;
         for (int i = 0; i < 3 * c->ne; i++) {
@@ -410,24 +408,16 @@ static inline void truth_enumerate(truth_search_t *t)
                 truth_try_both(t, n);
         }
     }
-    /* origin outside the core: along its nearest edge or vertex */
-    for (int i = 0; i < a->nv; i++) {
-        for (int j = 0; j < b->nv; j++) {
-            truth_minus(a->v[i], b->v[j], p);
-            truth_nearest(p, p, &least, point);
-        }
-        for (int j = 0; j < b->ne; j++) {
-            truth_minus(a->v[i], b->v[b->e[j][0]], p);
-            truth_minus(a->v[i], b->v[b->e[j][1]], q);
-            truth_nearest(p, q, &least, point);
-        }
+    /* origin outside the core: along its closest edge or vertex */
+    for (int side = 0; side < 2; side++) {
+        const truth_core_t *c = side ? b : a, *o = side ? a : b;
+        for (int i = 0; i < c->nv; i++)
+            for (int j = 0; j < o->ne; j++) {
+                truth_minus(c->v[i], o->v[o->e[j][0]], p);
+                truth_minus(c->v[i], o->v[o->e[j][1]], q);
+                truth_closest(p, q, &least, point);
+            }
     }
-    for (int j = 0; j < b->nv; j++)
-        for (int i = 0; i < a->ne; i++) {
-            truth_minus(a->v[a->e[i][0]], b->v[j], p);
-            truth_minus(a->v[a->e[i][1]], b->v[j], q);
-            truth_nearest(p, q, &least, point);
-        }
     if (least > 0) {
         least = sqrtl(least);
         for (int k = 0; k < 3; k++)
@@ -444,9 +434,9 @@ typedef struct {
     double bound;
 } truth_triangle_t;
 
-/* Value of the 3 x 3 game: over convex weights of the rows, the largest least
- * column. Candidates: single rows, two rows where two columns meet, all three
- * where all columns meet; the largest valid one is a bound, whichever it is. */
+/* Returns the value of the 3 x 3 matrix game: the largest, over convex weights of the rows, of the least
+ * column. Candidates: single rows, two rows where two columns are equal, all three where all columns
+ * are; each is a lower bound. */
 static inline double truth_game(double m[3][3])
 {
     double best = -HUGE_VAL;
@@ -488,7 +478,7 @@ static inline double truth_game(double m[3][3])
     return best;
 }
 
-/* Square of the longest edge. */
+/* Returns the square of the longest edge. */
 static inline double truth_edge2(const truth_triangle_t *t)
 {
     double most = 0;
@@ -501,7 +491,7 @@ static inline double truth_edge2(const truth_triangle_t *t)
     return most;
 }
 
-/* Least value that h can have inside the triangle. */
+/* Returns a lower bound of h in the triangle. */
 static inline double truth_bound(const truth_triangle_t *t)
 {
     double m[3][3], value;
@@ -547,7 +537,7 @@ static inline void truth_pop(truth_heap_t *h, truth_triangle_t *top)
     h->heap[i] = *last;
 }
 
-/* Support point in direction n (any length but zero, made unit); keeps the best. */
+/* Samples D along n, of any length but zero, which becomes unit; stores the direction if it is the best. */
 static inline void truth_sample(const shape_t *a, const shape_t *b, truth_t *out, double n[3], double s[3])
 {
     double l = sqrt(truth_dot3(n, n)), h;
@@ -561,7 +551,7 @@ static inline void truth_sample(const shape_t *a, const shape_t *b, truth_t *out
     }
 }
 
-/* Splits until the bounds are closer than width, or budget triangles are in use. */
+/* Splits triangles until the bounds are closer than width, or budget triangles are in use. */
 static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double width, int budget)
 {
     static const double octahedron[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
@@ -628,10 +618,10 @@ static inline truth_t truth_branch(const shape_t *a, const shape_t *b, double wi
     return out;
 }
 
-/* --- the two questions -------------------------------------------------------- */
+/* --- signed depth, and depth along a direction --------------------------------- */
 
-/* The signed depth; width is what the bounds should close to where they must be
- * searched (1e-12 of the size is about what double can). */
+/* Returns the signed depth. Where it is not enumerated, its bounds close to width (1e-12 of the size is
+ * about the limit of double). */
 static inline truth_t truth_depth_within(const shape_t *a, const shape_t *b, double width)
 {
     truth_search_t t;
@@ -652,9 +642,9 @@ static inline truth_t truth_depth(const shape_t *a, const shape_t *b)
     return truth_depth_within(a, b, 1e-12 * pair_size(a, b));
 }
 
-/* How far b must move along the unit vector dir until it is apart: the root of the signed
- * depth over the way, which is concave, so that steps from beyond it never pass it. The
- * shapes must overlap. */
+/* Returns how far b must move along the unit vector dir until it is apart: the root of the signed
+ * depth over the way, by Newton's steps from beyond it, which never pass it as the function is
+ * concave. The shapes must overlap. */
 static inline truth_t truth_along(const shape_t *a, const shape_t *b, const double dir[3])
 {
     double way = 2 * pair_size(a, b), step;

@@ -11,8 +11,8 @@
 
 typedef enum {
     VERDICT_RIGHT,
-    VERDICT_MISSED,   /* they overlap, the answer is no */
-    VERDICT_SPURIOUS, /* they are apart, the answer is yes */
+    VERDICT_MISSED,   /* a miss of objects that overlap */
+    VERDICT_SPURIOUS, /* a hit of objects that are apart */
     VERDICT_INVALID,   /* a direction that is not unit, a depth that is negative or no number */
     VERDICT_DEEP,     /* more than 1 % and two tolerances deeper than the least depth */
     VERDICT_UNSOUND,  /* moving obj2 by depth * dir leaves them overlapping */
@@ -28,10 +28,10 @@ VERDICT_UNUSED static const char *const VERDICT_NAME[VERDICTS] = { "right", "ove
 typedef struct {
     double lower, upper;
     double tolerance; /* of the query */
-    double contact_eps; /* depths and gaps within this are neither hit nor miss */
+    double contact_eps; /* of depths and gaps within this both hit and miss are right */
 } verdict_truth_t;
 
-/* An answer; those of yes or no have neither depth nor direction. */
+/* An answer; booleans have neither depth nor direction. */
 typedef struct {
     int hit, has_depth;
     double depth, length2; /* square of the direction's length */
@@ -53,13 +53,13 @@ VERDICT_UNUSED static inline verdict_t verdict(const verdict_answer_t *answer, c
     return answer->depth < truth->lower - 2 * truth->tolerance ? VERDICT_UNSOUND : VERDICT_RIGHT;
 }
 
-/* Whether the depth can be held against the truth: a hit that is one, and a number. */
+/* Returns whether the depth can be compared with the truth: of a true hit, and a number. */
 VERDICT_UNUSED static inline int verdict_has_error(const verdict_answer_t *answer, verdict_t v)
 {
     return answer->hit && answer->has_depth && v != VERDICT_SPURIOUS && v != VERDICT_INVALID;
 }
 
-/* How far the depth is off the bounds, metres. */
+/* Returns how far the depth is off the bounds, metres. */
 VERDICT_UNUSED static inline double verdict_error(const verdict_answer_t *answer, const verdict_truth_t *truth)
 {
     if (answer->depth > truth->upper)
