@@ -22,7 +22,8 @@ typedef enum {
 /* Programs use a part of this file. */
 #define VERDICT_UNUSED __attribute__((unused))
 
-VERDICT_UNUSED static const char *const VERDICT_NAME[VERDICTS] = { "right", "overlap missed", "false hit", "no direction", "too deep", "unsound" };
+VERDICT_UNUSED static const char *const VERDICT_NAME[VERDICTS] = {"right",        "overlap missed", "false hit",
+                                                                  "no direction", "too deep",       "unsound"};
 
 /* Metres. The signed depth: positive overlapping, negative the gap. */
 typedef struct {

@@ -64,7 +64,7 @@ static void judge_pair(int category, int i, const pair_t *p, int k)
         const answer_t x = call_entry(e, &p->a, &p->b, tols[t], p->truth.n);
         rates_t *r = &rates[tie][k][category][t];
         criteria_t q = criteria_of(&p->a, &p->b, tols[t], &p->truth);
-        q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_stop(p, tols[t]);
+        q.surface = category == CATEGORY_CONCENTRIC ? ALL_AROUND : pair_may_reach_limit(p, tols[t]);
         const int faults = judge(e, &x, &p->a, &p->b, &q);
         r->queries++;
         r->calls += (double)x.calls;
@@ -73,7 +73,8 @@ static void judge_pair(int category, int i, const pair_t *p, int k)
             r->count[bit] += faults >> bit & 1;
         if (!e->is_libccd && faults & FAULTS_FORBIDDEN & ~printed[tie][k]) {
             printed[tie][k] |= faults;
-            printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t], q.surface ? ", surface" : "");
+            printf("first seen: %s, pair %d, tolerance %g%s, ", category_text(category), i, tols[t],
+                   q.surface ? ", surface" : "");
             print_faulty_answer(e, &x, faults & FAULTS_FORBIDDEN, &p->truth);
             print_shape("  a", &p->a);
             print_shape("  b", &p->b);
@@ -126,8 +127,8 @@ static int print_broken(int pairs, int tie)
                 if (!(FAULTS_FORBIDDEN >> bit & 1) || n + m == 0)
                     continue;
                 const int known = is_known(category_text(category), entries[k].name, bit, n, m);
-                printf("%s %s, %s: %s: %d (default), %d (fine) of %d\n", known ? "broken, as known:" : "BROKEN", category_text(category),
-                       entries[k].name, fault_text(bit), n, m, pairs);
+                printf("%s %s, %s: %s: %d (default), %d (fine) of %d\n", known ? "broken, as known:" : "BROKEN",
+                       category_text(category), entries[k].name, fault_text(bit), n, m, pairs);
                 broken += known ? 0 : n + m;
             }
         }

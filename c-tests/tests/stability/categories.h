@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* The categories of pairs where penetration methods fail at different rates. Pair i
- * of a category is always the same pair, in whatever order they are asked for. */
+/* Categories of pairs, which penetration methods fail at different rates. Pair i of a
+ * category is always the same pair. */
 
 #ifndef STABILITY_CATEGORIES_H
 #define STABILITY_CATEGORIES_H
@@ -15,17 +15,17 @@
 
 enum { PAIR_VERTICES = 20 };
 
-/* Holds its polytopes' vertices: refer to it by pointer, do not copy it. */
+/* Owns its polytopes' vertices: refer to it by pointer, do not copy it. */
 typedef struct {
     shape_t a, b;
     ccd_real_t verts[2][3 * PAIR_VERTICES];
     truth_t truth;
-    double growth[2]; /* of h from the true normal: (h - depth) / angle^2, least and across */
+    double growth[2]; /* of h from the true normal: (h - depth) / angle^2, the least and across it */
 } pair_t;
 
 static inline shape_t *pair_side(pair_t *p, int k) { return k ? &p->b : &p->a; }
 
-/* b to so far along n. */
+/* Moves b to that distance along n. */
 static inline void pair_place(pair_t *p, double at, const double n[3]) { shape_move(&p->b, at * n[0], at * n[1], at * n[2]); }
 
 static inline void pair_turn(rng_t *d, shape_t *s)
@@ -35,7 +35,7 @@ static inline void pair_turn(rng_t *d, shape_t *s)
     shape_turn(s, r);
 }
 
-/* A hull of 4 to PAIR_VERTICES points on an ellipsoid of the given size. */
+/* Makes a hull of 4 to PAIR_VERTICES points on an ellipsoid of the given size. */
 static inline shape_t random_hull(rng_t *d, ccd_real_t *verts, double size)
 {
     int i, k, n = 4 + rng_below(d, PAIR_VERTICES - 3);
@@ -50,7 +50,7 @@ static inline shape_t random_hull(rng_t *d, ccd_real_t *verts, double size)
     return shape_polytope(verts, n);
 }
 
-/* A convex polygon of 3 to 8 corners in the plane z = 0. */
+/* Makes a convex polygon of 3 to 8 corners in the plane z = 0. */
 static inline shape_t random_polygon(rng_t *d, ccd_real_t *verts, double size)
 {
     int i, n = 3 + rng_below(d, 6);
@@ -70,19 +70,20 @@ static inline shape_t random_shape_of(rng_t *d, ccd_real_t *verts, shape_type_t 
     return type == SHAPE_POLYTOPE ? random_hull(d, verts, x) : shape_make(type, x, y, z);
 }
 
-static const int all_types[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
+static const int all_types[] = {SHAPE_SPHERE, SHAPE_CAPSULE,   SHAPE_BOX,     SHAPE_CYLINDER,
+                                SHAPE_CONE,   SHAPE_ELLIPSOID, SHAPE_POLYTOPE};
 
-/* One of these kinds. */
-static inline void pair_one(rng_t *d, pair_t *p, int side, const int *kinds, int n, double low, double high)
+/* Makes one side a shape of one of these types. */
+static inline void pair_set_random(rng_t *d, pair_t *p, int side, const int *kinds, int n, double low, double high)
 {
     *pair_side(p, side) = random_shape_of(d, p->verts[side], (shape_type_t)kinds[rng_below(d, n)], low, high);
 }
 
-/* Two of these kinds, turned. */
-static inline void pair_of(rng_t *d, pair_t *p, const int *kinds, int n)
+/* Makes both sides shapes of these types, turned at random. */
+static inline void pair_set_both(rng_t *d, pair_t *p, const int *kinds, int n)
 {
     for (int k = 0; k < 2; k++)
-        pair_one(d, p, k, kinds, n, .1, 1);
+        pair_set_random(d, p, k, kinds, n, .1, 1);
     for (int k = 0; k < 2; k++)
         pair_turn(d, pair_side(p, k));
 }
@@ -104,7 +105,7 @@ static inline void pair_scatter(rng_t *d, pair_t *p, double part, double depth)
     shape_move(&p->b, depth < 0 ? 10 : 0, 0, 0);
 }
 
-/* By so much further along n. */
+/* Moves the shape along n. */
 static inline void shape_shift(shape_t *s, double by, const double n[3])
 {
     shape_move(s, (double)s->pos[0] + by * n[0], (double)s->pos[1] + by * n[1], (double)s->pos[2] + by * n[2]);
@@ -112,14 +113,14 @@ static inline void shape_shift(shape_t *s, double by, const double n[3])
 
 /* Moves b along the true normal until only depth is left: exact, because the
  * minimum of h(n) - s n.m over n stays where it was. */
-static inline void pair_pull_out(pair_t *p, double depth)
+static inline void pair_set_depth(pair_t *p, double depth)
 {
     const truth_t t = truth_depth(&p->a, &p->b);
     shape_shift(&p->b, t.depth - depth, t.n);
 }
 
-/* h on a circle of directions about n, at angle psi of it. */
-static inline double pair_around(const pair_t *p, const double u[3], const double v[3], double angle, double psi)
+/* Returns h of the direction at angle psi of a circle about the true normal. */
+static inline double value_around(const pair_t *p, const double u[3], const double v[3], double angle, double psi)
 {
     double m[3];
     for (int k = 0; k < 3; k++)
@@ -127,8 +128,8 @@ static inline double pair_around(const pair_t *p, const double u[3], const doubl
     return truth_support_value(&p->a, &p->b, m);
 }
 
-/* How h grows from the true normal: the way along which it grows least, and across. */
-static inline void pair_grow(pair_t *p)
+/* Computes how h grows from the true normal: in the tangent direction of least growth, and across it. */
+static inline void pair_set_growth(pair_t *p)
 {
     const double *n = p->truth.n, angle = .05, step = .1;
     double u[3], v[3], axis[3] = {0, 0, 0}, l, psi, best = 0, least = HUGE_VAL;
@@ -140,30 +141,29 @@ static inline void pair_grow(pair_t *p)
         u[k] /= l;
     truth_cross3(n, u, v);
     for (psi = 0; psi < 6.3; psi += step)
-        if (pair_around(p, u, v, angle, psi) < least) {
-            least = pair_around(p, u, v, angle, psi);
+        if (value_around(p, u, v, angle, psi) < least) {
+            least = value_around(p, u, v, angle, psi);
             best = psi;
         }
-    /* the way may be narrow: thirds of the last interval, until it is tiny */
+    /* the minimum may be narrow: shrink the last interval by thirds */
     for (i = 0, l = step; i < 60; i++, l *= 2. / 3)
         for (int k = -1; k <= 1; k += 2)
-            if (pair_around(p, u, v, angle, best + k * l / 3) < least) {
+            if (value_around(p, u, v, angle, best + k * l / 3) < least) {
                 best += k * l / 3;
-                least = pair_around(p, u, v, angle, best);
+                least = value_around(p, u, v, angle, best);
             }
     p->growth[0] = fmax(least - p->truth.depth, 0) / (angle * angle);
-    p->growth[1] = fmax(fmin(pair_around(p, u, v, angle, best + 1.570796), pair_around(p, u, v, angle, best - 1.570796))
+    p->growth[1] = fmax(fmin(value_around(p, u, v, angle, best + 1.570796), value_around(p, u, v, angle, best - 1.570796))
                         - p->truth.depth, 0) / (angle * angle);
 }
 
-/* May a proof to this tolerance need more support points than the library takes? At an
- * angle x from the minimum a face may be as wide as the square root of
- * (tol + growth x^2) / size: about size / growth times the logarithm of growth / tol in
- * all, which is within a fifth of what is counted. Half as many as the 350 that the library
- * takes, because nearly concentric shapes have two minima. */
-static inline int pair_may_stop(const pair_t *p, double tol)
+/* Returns whether a proof to this tolerance may need more support points than the library takes. At an
+ * angle x from the minimum a face may be as wide as the square root of (tol + growth x^2) / size: in
+ * all about size / growth times the logarithm of growth / tol, within a fifth of the counts. The limit
+ * is half of the library's 350, because nearly concentric shapes have two minima. */
+static inline int pair_may_reach_limit(const pair_t *p, double tol)
 {
-    /* what the library makes of it */
+    /* the tolerance in force */
     double size = pair_size(&p->a, &p->b), x = fmax(fmin(tol, 1e-3 * size), pair_noise(&p->a, &p->b) / 2);
     double both = sqrt((p->growth[0] + x) * (p->growth[1] + x));
     return 1.2 * size / both * log(1 + 2 * both / x) > 180;
@@ -219,13 +219,13 @@ static inline const char *category_text(int category)
     return texts[category];
 }
 
-/* Two shapes that touch with their support points in a random direction, pushed into each other by
- * at most a thousandth of the size: corners and rims meet. */
-static inline void pair_corners(rng_t *d, pair_t *p)
+/* Makes two shapes that touch with their support points in a random direction, and pushes them into each
+ * other by at most a thousandth of the size: corners and rims meet. */
+static inline void make_corners(rng_t *d, pair_t *p)
 {
     static const int kinds[] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE};
     double part = rng_log_uniform(d, 1e-5, 1e-3), deep;
-    pair_of(d, p, kinds, 4);
+    pair_set_both(d, p, kinds, 4);
     do {
         double u[3], s[3];
         deep = part * pair_size(&p->a, &p->b);
@@ -238,9 +238,9 @@ static inline void pair_corners(rng_t *d, pair_t *p)
     } while (!(truth_depth(&p->a, &p->b).lower > deep / 10));
 }
 
-/* Where minima lie all around: spheres, nearly round ellipsoids, a short capsule and a sphere,
+/* Makes a pair with minima all around: spheres, nearly round ellipsoids, a short capsule and a sphere,
  * cylinders on one axis. */
-static inline void pair_concentric(rng_t *d, pair_t *p)
+static inline void make_concentric(rng_t *d, pair_t *p)
 {
     const double r = rng_uniform(d, .1, 1), s = rng_uniform(d, .1, 1), at = rng_log_uniform(d, 1e-12, .1) * (r + s);
     double u[3];
@@ -259,8 +259,8 @@ static inline void pair_concentric(rng_t *d, pair_t *p)
     pair_place(p, at, u);
 }
 
-/* Any two shapes, 1e-6 to 1e6 m large: apart to deep, on a shared axis, about one centre. */
-static inline void pair_scaled(rng_t *d, pair_t *p)
+/* Makes any two shapes, 1e-6 to 1e6 m large: apart to deep, on a shared axis, about one centre. */
+static inline void make_scaled(rng_t *d, pair_t *p)
 {
     enum { SCATTERED, DEEP, SHALLOW, ON_AXIS, NEARLY_CENTRED, CENTRED, PLACES };
     const double scale = pow(10, 3 * (rng_below(d, 5) - 2));
@@ -268,7 +268,7 @@ static inline void pair_scaled(rng_t *d, pair_t *p)
     double u[3], x;
     int k;
     for (k = 0; k < 2; k++)
-        pair_one(d, p, k, all_types, SHAPE_TYPES, .1 * scale, scale);
+        pair_set_random(d, p, k, all_types, SHAPE_TYPES, .1 * scale, scale);
     if (place != ON_AXIS || rng_below(d, 2))
         pair_turn(d, &p->a);
     if (place == ON_AXIS)
@@ -280,7 +280,7 @@ static inline void pair_scaled(rng_t *d, pair_t *p)
     case SHALLOW:
         pair_scatter(d, p, 1, 1e-3 * scale);
         if (place == SHALLOW)
-            pair_pull_out(p, pair_size(&p->a, &p->b) * rng_log_uniform(d, 1e-8, 1e-2));
+            pair_set_depth(p, pair_size(&p->a, &p->b) * rng_log_uniform(d, 1e-8, 1e-2));
         break;
     case DEEP:
         pair_scatter(d, p, .2, 1e-3 * scale);
@@ -299,8 +299,8 @@ static inline void pair_scaled(rng_t *d, pair_t *p)
     }
 }
 
-/* Two capsules: parallel, coaxial, crossing or nearly. */
-static inline void pair_capsules(rng_t *d, pair_t *p)
+/* Makes two capsules: parallel, coaxial, crossing or nearly. */
+static inline void make_capsules(rng_t *d, pair_t *p)
 {
     double x, r[9];
     p->a = shape_capsule(rng_uniform(d, .1, .5), rng_uniform(d, .1, 1));
@@ -321,13 +321,12 @@ static inline void pair_capsules(rng_t *d, pair_t *p)
     }
 }
 
-/* A length of the grid. */
-static inline double pair_eighths(rng_t *d, int least, int n) { return (least + rng_below(d, n)) / 8.; }
+static inline double random_eighths(rng_t *d, int least, int n) { return (least + rng_below(d, n)) / 8.; }
 
-/* On or off the middle of what it stands on. */
-static inline double pair_aside(rng_t *d, double by) { return rng_below(d, 2) ? 0 : rng_uniform(d, -by, by); }
+/* Zero, half of the time. */
+static inline double random_offset(rng_t *d, double by) { return rng_below(d, 2) ? 0 : rng_uniform(d, -by, by); }
 
-/* Pair number index of a category, with its truth. */
+/* Makes pair number index of a category, with its truth. */
 static inline void category_pair(int category, uint64_t index, int tie, pair_t *p)
 {
     static const int solid[] = {SHAPE_CYLINDER, SHAPE_POLYTOPE, SHAPE_BOX};
@@ -339,20 +338,22 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     switch (category) {
     case CATEGORY_GENERIC:
     case CATEGORY_APART:
-        pair_of(d, p, all_types, SHAPE_TYPES);
+        pair_set_both(d, p, all_types, SHAPE_TYPES);
         pair_scatter(d, p, category == CATEGORY_APART ? 1.5 : 1, category == CATEGORY_APART ? -1e-3 : 1e-3);
         break;
     case CATEGORY_SHALLOW3:
     case CATEGORY_SHALLOW5:
     case CATEGORY_TOUCHING:
-        pair_of(d, p, all_types, SHAPE_TYPES);
+        pair_set_both(d, p, all_types, SHAPE_TYPES);
         pair_scatter(d, p, 1, 1e-3);
         x = pair_size(&p->a, &p->b);
-        pair_pull_out(p, category == CATEGORY_SHALLOW3 ? 1e-3 * x : category == CATEGORY_SHALLOW5 ? 1e-5 * x : rng_sign(d) * 1e-12);
+        pair_set_depth(p, category == CATEGORY_SHALLOW3   ? 1e-3 * x
+                          : category == CATEGORY_SHALLOW5 ? 1e-5 * x
+                                                          : rng_sign(d) * 1e-12);
         break;
     case CATEGORY_COINCIDENT:
     case CATEGORY_NEAR_COINCIDENT:
-        pair_of(d, p, all_types, SHAPE_TYPES);
+        pair_set_both(d, p, all_types, SHAPE_TYPES);
         if (category == CATEGORY_NEAR_COINCIDENT) {
             rng_unit_vector(d, u);
             pair_place(p, rng_log_uniform(d, 1e-18, 1e-8), u);
@@ -360,8 +361,8 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_GRID:
         for (k = 0; k < 2; k++)
-            *pair_side(p, k) = shape_box(pair_eighths(d, 1, 8), pair_eighths(d, 1, 8), pair_eighths(d, 1, 8));
-        shape_move(&p->b, pair_eighths(d, -4, 9), pair_eighths(d, -4, 9), pair_eighths(d, -4, 9));
+            *pair_side(p, k) = shape_box(random_eighths(d, 1, 8), random_eighths(d, 1, 8), random_eighths(d, 1, 8));
+        shape_move(&p->b, random_eighths(d, -4, 9), random_eighths(d, -4, 9), random_eighths(d, -4, 9));
         break;
     case CATEGORY_KISSING: {
         const double gap = rng_sign(d) * rng_log_uniform(d, 1e-15, 1e-6);
@@ -394,7 +395,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_INSIDE:
         for (k = 0; k < 2; k++) {
-            pair_one(d, p, k, all_types, SHAPE_TYPES, k ? .01 : .5, k ? .1 : 1);
+            pair_set_random(d, p, k, all_types, SHAPE_TYPES, k ? .01 : .5, k ? .1 : 1);
             pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .3, 2 * shape_reach(&p->b));
@@ -402,7 +403,8 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     case CATEGORY_THIN_BOXES:
         for (k = 0; k < 2; k++) {
             x = rng_log_uniform(d, 1e2, 1e6);
-            *pair_side(p, k) = rng_below(d, 2) ? shape_box(1, rng_uniform(d, .3, 1), 1 / x) : shape_box(1, 1 / x, rng_uniform(d, .5, 2) / x);
+            *pair_side(p, k) = rng_below(d, 2) ? shape_box(1, rng_uniform(d, .3, 1), 1 / x)
+                                               : shape_box(1, 1 / x, rng_uniform(d, .5, 2) / x);
             pair_turn(d, pair_side(p, k));
         }
         pair_scatter(d, p, .1, 0);
@@ -414,7 +416,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         pair_turn(d, &p->a);
         pair_turn(d, &p->b);
         rng_unit_vector(d, u);
-        /* their axes pass at this or less; then slid along a's axis */
+        /* axes at most this far apart; then moved along a's axis */
         pair_place(p, rng_uniform(d, 0, 1) / x, u);
         for (k = 0; k < 3; k++)
             u[k] = (double)p->a.rot[3 * k + 2];
@@ -424,7 +426,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     case CATEGORY_FLAT_CENTRED:
         p->a = random_polygon(d, p->verts[0], rng_uniform(d, .1, 1));
         pair_turn(d, &p->a);
-        pair_one(d, p, 1, all_types, SHAPE_TYPES, .1, 1);
+        pair_set_random(d, p, 1, all_types, SHAPE_TYPES, .1, 1);
         pair_turn(d, &p->b);
         if (category == CATEGORY_FLAT) {
             pair_scatter(d, p, .7, 1e-4);
@@ -441,18 +443,18 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         p->verts[0][5] = (ccd_real_t)x;
         p->a = shape_polytope(p->verts[0], x > 0 ? 2 : 1);
         pair_turn(d, &p->a);
-        pair_one(d, p, 1, all_types, SHAPE_TYPES, .1, 1);
+        pair_set_random(d, p, 1, all_types, SHAPE_TYPES, .1, 1);
         pair_turn(d, &p->b);
         pair_scatter(d, p, .5, 1e-4);
         break;
     case CATEGORY_CAPSULES:
-        pair_capsules(d, p);
+        make_capsules(d, p);
         break;
     case CATEGORY_CAPS:
         p->a = shape_cylinder(rng_uniform(d, .2, 1), rng_uniform(d, .1, 1));
         p->b = shape_cylinder(rng_uniform(d, .2, 1), rng_uniform(d, .1, 1));
         x = rng_log_uniform(d, 1e-4, .05);
-        shape_move(&p->b, pair_aside(d, .1), pair_aside(d, .1), (double)p->a.p[1] + (double)p->b.p[1] - x);
+        shape_move(&p->b, random_offset(d, .1), random_offset(d, .1), (double)p->a.p[1] + (double)p->b.p[1] - x);
         break;
     case CATEGORY_APEX:
         p->a = rng_below(d, 2) ? shape_box(rng_uniform(d, .3, 1), rng_uniform(d, .3, 1), rng_uniform(d, .1, 1))
@@ -462,7 +464,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         shape_turn(&p->b, r);
         x = rng_log_uniform(d, 1e-6, .3);
         z = (double)p->a.p[p->a.type == SHAPE_BOX ? 2 : 1];
-        shape_move(&p->b, pair_aside(d, .2), pair_aside(d, .2), z + (double)p->b.p[1] - x);
+        shape_move(&p->b, random_offset(d, .2), random_offset(d, .2), z + (double)p->b.p[1] - x);
         break;
     case CATEGORY_EDGES:
         x = rng_uniform(d, .2, 1);
@@ -484,7 +486,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         pair_scatter(d, p, .7, 1e-4);
         break;
     case CATEGORY_CORNERS:
-        pair_corners(d, p);
+        make_corners(d, p);
         break;
     case CATEGORY_DISCS:
         for (k = 0; k < 2; k++)
@@ -500,31 +502,31 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         shape_move(&p->b, truth_dot3(r, u), truth_dot3(r + 3, u), truth_dot3(r + 6, u));
         break;
     case CATEGORY_CENTRED_SPHERE:
-        pair_one(d, p, 0, solid, 3, .1, 1);
+        pair_set_random(d, p, 0, solid, 3, .1, 1);
         pair_turn(d, &p->a);
         p->b = shape_sphere(rng_uniform(d, .1, 1));
         rng_unit_vector(d, u);
         pair_place(p, rng_log_uniform(d, 1e-3, .3) * shape_reach(&p->a), u);
         break;
     case CATEGORY_SCALED:
-        pair_scaled(d, p);
+        make_scaled(d, p);
         break;
     case CATEGORY_FAR_6:
     case CATEGORY_FAR_8:
-        pair_of(d, p, all_types, SHAPE_TYPES);
+        pair_set_both(d, p, all_types, SHAPE_TYPES);
         pair_scatter(d, p, 1, 1e-3);
         rng_unit_vector(d, u);
         for (k = 0; k < 2; k++)
             shape_shift(pair_side(p, k), category == CATEGORY_FAR_6 ? 1e6 : 1e8, u);
         break;
     default:
-        pair_concentric(d, p);
+        make_concentric(d, p);
         break;
     }
     p->a.tie = p->b.tie = tie;
-    /* of what is nearly round all around, as near as it is judged */
-    p->truth = category == CATEGORY_CONCENTRIC ? truth_depth_within(&p->a, &p->b, 1e-5 * pair_size(&p->a, &p->b)) : truth_depth(&p->a, &p->b);
-    pair_grow(p);
+    /* with minima all around only as close as it is judged */
+    p->truth = truth_depth_within(&p->a, &p->b, (category == CATEGORY_CONCENTRIC ? 1e-5 : 1e-12) * pair_size(&p->a, &p->b));
+    pair_set_growth(p);
 }
 
 #endif

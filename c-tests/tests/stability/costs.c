@@ -51,11 +51,11 @@ static unsigned long points_of(int call, const shape_t *a, const shape_t *b, ccd
 static void make_overlapping(rng_t *d, pair_t *p, const int *types, int n, double part)
 {
     do {
-        pair_of(d, p, types, n);
+        pair_set_both(d, p, types, n);
         pair_scatter(d, p, 1, 1e-3);
         p->truth = truth_depth(&p->a, &p->b);
     } while (!(p->truth.lower > part * pair_size(&p->a, &p->b)));
-    pair_pull_out(p, part * pair_size(&p->a, &p->b));
+    pair_set_depth(p, part * pair_size(&p->a, &p->b));
 }
 
 static const int flat_types[] = {SHAPE_BOX, SHAPE_POLYTOPE};

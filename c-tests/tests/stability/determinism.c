@@ -38,8 +38,9 @@ static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
         ccd_penetration_t full;
         ccd_distance_t distance;
         const call_args_t x = {.warm = warm, .along = &along, .margin1 = (ccd_real_t).01, .max_distance = (ccd_real_t)INFINITY,
-                               .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &outputs.depth, .dir = &outputs.dir,
-                               .pos = &outputs.pos, .contacts = contact, .penetration = &full, .distance = &distance};
+                               .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &outputs.depth,
+                               .dir = &outputs.dir, .pos = &outputs.pos, .contacts = contact, .penetration = &full,
+                               .distance = &distance};
         memset(&outputs, 0, sizeof outputs);
         memset(contact, 0, sizeof contact);
         memset(&full, 0, sizeof full);

@@ -601,7 +601,8 @@ static inline int judge(const entry_t *e, const answer_t *x, const shape_t *a, c
     if (e->call != CALL_SEPARATE)
         faults |= judge_unit(x->dir);
     /* along a direction that is not the normal the plane is farther */
-    value = x->has_bounds ? truth_support_value(a, b, x->normal) / truth_dot3(x->dir, x->normal) : truth_support_value(a, b, x->dir);
+    value = x->has_bounds ? truth_support_value(a, b, x->normal) / truth_dot3(x->dir, x->normal)
+                          : truth_support_value(a, b, x->dir);
     faults |= judge_rates(x, value, q);
     if (e->is_libccd)
         return faults;
@@ -636,7 +637,8 @@ static inline void print_faulty_answer(const entry_t *e, const answer_t *x, int 
     print_faults(faults);
     printf(": ");
     print_answer(x);
-    printf(", truth %.17g (lower %.17g) along %.17g %.17g %.17g\n", truth->depth, truth->lower, truth->n[0], truth->n[1], truth->n[2]);
+    printf(", truth %.17g (lower %.17g) along %.17g %.17g %.17g\n", truth->depth, truth->lower, truth->n[0], truth->n[1],
+           truth->n[2]);
 }
 
 /* Prints everything that makes the shape again. */

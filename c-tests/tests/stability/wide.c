@@ -200,7 +200,8 @@ static unsigned long most_supports[CALLS], limits_of[CALLS], limits_at[TOLERANCE
 
 static void print_body(const char *name, const body_t *s)
 {
-    printf("  %s: part %d (%.17g, %.17g, %.17g, %.17g) points %d child %d (%.17g, %.17g, %.17g) margin %.17g at (%.17g, %.17g, %.17g) m",
+    printf("  %s: part %d (%.17g, %.17g, %.17g, %.17g) points %d child %d (%.17g, %.17g, %.17g) margin %.17g "
+           "pos (%.17g, %.17g, %.17g) rot",
            name, (int)s->part.kind, s->part.p[0], s->part.p[1], s->part.p[2], s->part.p[3], s->part.count, (int)s->child.kind,
            s->child.p[0], s->child.p[1], s->child.p[2], s->margin, s->pos[0], s->pos[1], s->pos[2]);
     for (int i = 0; i < 9; i++)
@@ -254,7 +255,8 @@ static case_t case_of(const wide_pair_t *p, const wide_answer_t *answers, int co
     return c;
 }
 
-static void judge_all(int row, uint64_t index, const wide_pair_t *p, const case_t *c, const wide_answer_t *answers, int count, rng_t *d)
+static void judge_all(int row, uint64_t index, const wide_pair_t *p, const case_t *c, const wide_answer_t *answers, int count,
+                      rng_t *d)
 {
     for (int i = 0; i < count; i++)
         tally(row, index, p, c, &answers[i], judge_wide(&answers[i], p, c, d));
