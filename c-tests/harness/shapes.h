@@ -95,6 +95,12 @@ static inline void shape_move(shape_t *s, double x, double y, double z)
     s->pos[2] = (ccd_real_t)z;
 }
 
+/* Moves the shape along n. */
+static inline void shape_shift(shape_t *s, double by, const double n[3])
+{
+    shape_move(s, (double)s->pos[0] + by * n[0], (double)s->pos[1] + by * n[1], (double)s->pos[2] + by * n[2]);
+}
+
 static inline void shape_turn(shape_t *s, const double rot[9])
 {
     for (int i = 0; i < 9; i++)

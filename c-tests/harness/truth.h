@@ -643,22 +643,22 @@ static inline truth_t truth_depth(const shape_t *a, const shape_t *b)
 }
 
 /* Returns how far b must move along the unit vector dir until it is apart: the root of the signed
- * depth over the way, by Newton's steps from beyond it, which never pass it as the function is
+ * depth over that distance, by Newton's steps from beyond it, which never pass it as the function is
  * concave. The shapes must overlap. */
 static inline truth_t truth_along(const shape_t *a, const shape_t *b, const double dir[3])
 {
-    double way = 2 * pair_size(a, b), step;
+    double distance = 2 * pair_size(a, b), step;
     truth_t t;
     int tries = 0;
     do {
         shape_t moved = *b;
-        shape_move(&moved, (double)b->pos[0] + way * dir[0], (double)b->pos[1] + way * dir[1], (double)b->pos[2] + way * dir[2]);
+        shape_shift(&moved, distance, dir);
         t = truth_depth(a, &moved);
         step = t.depth / truth_dot3(t.n, dir);
-        way += step;
+        distance += step;
     } while (++tries < 50 && -step > 1e-13 * pair_size(a, b));
-    t.lower = way - (t.depth - t.lower) / truth_dot3(t.n, dir);
-    t.depth = way;
+    t.lower = distance - (t.depth - t.lower) / truth_dot3(t.n, dir);
+    t.depth = distance;
     return t;
 }
 

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Judges one answer about a pair, given bounds on its signed depth. The recorded
- * contacts (tools/record/replay.c), the tool (tools/compare/) and the cases that it keeps judge by this. */
+ * contacts (tools/record/replay.c), the tool (tools/compare/) and the cases that it writes are judged by this. */
 
 #ifndef TESTS_VERDICT_H
 #define TESTS_VERDICT_H

@@ -105,12 +105,6 @@ static inline void pair_scatter(rng_t *d, pair_t *p, double part, double depth)
     shape_move(&p->b, depth < 0 ? 10 : 0, 0, 0);
 }
 
-/* Moves the shape along n. */
-static inline void shape_shift(shape_t *s, double by, const double n[3])
-{
-    shape_move(s, (double)s->pos[0] + by * n[0], (double)s->pos[1] + by * n[1], (double)s->pos[2] + by * n[2]);
-}
-
 /* Moves b along the true normal until only depth is left: exact, because the
  * minimum of h(n) - s n.m over n stays where it was. */
 static inline void pair_set_depth(pair_t *p, double depth)

@@ -305,7 +305,7 @@ static inline answer_t call_entry(const entry_t *e, const shape_t *a, const shap
     X(NOT_NORMAL, "direction not the normal") \
     X(NOT_SUPPORT, "depth is not the support value of its direction") \
     X(NOT_MINIMUM, "not the minimum within tolerance") \
-    X(NOT_MPR_MINIMUM, "deeper than MPR promises") \
+    X(NOT_MPR_MINIMUM, "deeper than MPR guarantees") \
     X(FALSE_PROOF, "lower bound above the truth") \
     X(NO_PROOF, "gap above tolerance") \
     X(LIMIT, "stopped at the cap") \
@@ -373,8 +373,8 @@ static inline criteria_t criteria_of(const shape_t *a, const shape_t *b, double 
  * bounds is allowed, by that. */
 static inline double point_tolerance(const entry_t *e, const answer_t *x, const criteria_t *q)
 {
-    const double promised = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_MPR) * x->depth) : q->tol;
-    const double reached = x->code == CCD_LIMIT || e->call == CALL_PROVEN ? fmax(promised, x->depth - x->lower) : promised;
+    const double allowed = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_MPR) * x->depth) : q->tol;
+    const double reached = x->code == CCD_LIMIT || e->call == CALL_PROVEN ? fmax(allowed, x->depth - x->lower) : allowed;
     return reached + q->noise + tolerance(TOL_WITNESS) * q->size;
 }
 

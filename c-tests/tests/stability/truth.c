@@ -81,14 +81,14 @@ int main(int argc, char **argv)
         }
         for (i = 0; i < set.n; i += step) {
             shape_t a, b;
-            pair_truth_t known;
+            pair_truth_t certified;
             double eps = 128 * DBL_EPSILON;
-            pair_set_pose(&set, i, &a, &b, &known);
+            pair_set_pose(&set, i, &a, &b, &certified);
             truth_t t = truth_depth(&a, &b);
-            worst = fmax(worst, fabs(t.depth - known.depth));
+            worst = fmax(worst, fabs(t.depth - certified.depth));
             widest = fmax(widest, t.depth - t.lower);
-            if (!(t.lower <= known.depth + eps && t.depth >= known.depth - known.gap - eps))
-                fail("outside the certified bounds", &a, &b, known.depth, t.lower, t.depth);
+            if (!(t.lower <= certified.depth + eps && t.depth >= certified.depth - certified.gap - eps))
+                fail("outside the certified bounds", &a, &b, certified.depth, t.lower, t.depth);
             if (!(t.depth - t.lower <= 2e-12 * pair_size(&a, &b)))
                 fail("bounds do not close", &a, &b, t.depth, t.lower, t.depth);
         }

@@ -81,7 +81,7 @@ enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
 enum { TAIL_POINTS = 400 }; /* support points, at CCD_INIT's tolerance relative to the size */
 
-/* What is known of a pair in one pose. */
+/* The truth of a pair in one pose. */
 typedef struct {
     bounds_t truth;
     double noise; /* rounding error of a support value, metres */

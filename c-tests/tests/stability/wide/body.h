@@ -129,7 +129,7 @@ static void body_centre(const void *obj, ccd_vec3_t *out)
 
 /* --- sizes ------------------------------------------------------------------------ */
 
-/* Returns the radius of a ball about the position that holds the body, at most 1.7 times the least. */
+/* Returns the radius of a ball about the position that encloses the body, at most 1.7 times the least. */
 static double body_reach(const body_t *s)
 {
     double most = 0;
