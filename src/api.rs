@@ -151,9 +151,8 @@ pub struct Settings {
     /// the last place of the coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size
     /// of the Minkowski difference.
     pub tolerance: Real,
-    /// Limit on the support points of a query after its first tetrahedron, all stages together. The
-    /// library's own limits are 160, 320 for proofs and 380 for distances, and no query takes more
-    /// than 400 support points.
+    /// Limit on the support points after the first tetrahedron (along, planar: portal steps). Own limits: 160, proven
+    /// and along 320, distance and planar 380; no query was seen to take over 400 support points.
     pub max_iterations: u64,
     /// The requested results.
     pub want: Want,
@@ -295,7 +294,7 @@ pub struct Distance {
     pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
-    /// True if the gap between the bounds exceeds the tolerance: `max_iterations`, the library's limit
+    /// True if the bounds differ by more than the tolerance: `max_iterations`, the library's limit
     /// of support points or rounding ended the search.
     pub limit: bool,
 }

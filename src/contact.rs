@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Settings and results of the solvers, and the contact position.
+//! Settings and results of the solvers, the contact position and the contact manifold.
 //!
 //! All guarantees assume convex objects and support functions that return a farthest point. If the global query
 //! notices that a support function contradicts itself ([`Status::InconsistentSupport`]), it sets

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Scalars, vectors, normalisation and the iteration limit that all solvers share.
+//! Scalars, vectors, normalisation and the largest iteration limit.
 
 use nalgebra::{RealField, Vector3};
 

@@ -15,7 +15,7 @@
 //! | [`support`] | support functions, D, support points |
 //! | [`vertex_set`] | the known vertices and the support function of their differences |
 //! | [`query`] | evaluation, upper bound, separating-axis test, inconsistent support functions |
-//! | [`tolerance`] | tolerance in force, contact epsilon, rounding |
+//! | [`tolerance`] | effective tolerance, contact eps, rounding |
 //! | [`round_fit`] | sphere fits, which choose the directions to evaluate |
 //! | [`validate`] | tests of a support function and a center |
 

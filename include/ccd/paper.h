@@ -3,8 +3,8 @@
 
 /* Provides the method of W. Gao, Efficient Incremental Penetration Depth Estimation between Convex
  * Geometries (2023), as published, for comparisons. ccdPenetrationLocal of warm.h also
- * computes a local minimum, with fewer support points, and ccdPenetration the global one. Made by cbindgen from
- * src/ffi/paper.rs; edit there. */
+ * computes a local minimum, with fewer support points, and ccdPenetration the global one. cbindgen makes
+ * include/ccd/paper.h from src/ffi/paper.rs; edit there. */
 
 #ifndef __CCD_PAPER_H__
 #define __CCD_PAPER_H__

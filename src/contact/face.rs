@@ -8,14 +8,14 @@
 //!
 //! 1. *Face.* The face consists of the points with a drop of at most the slop. The support vertex of n + t, with a
 //!    small tilt t perpendicular to n, maximises t·r − drop(r), r being its position in the contact frame. At
-//!    |t| = 2 slop / size, a corner with a drop of half the slop has at least the value of any point a quarter of
-//!    the size closer. If the vertex has a drop greater than the slop, it is not in the face, and half the tilt is
+//!    |t| = 2 slop / size, a corner with a drop of half the slop has at least the value of any point size / 4 behind
+//!    it along t. If the vertex has a drop greater than the slop, it is not in the face, and half the tilt is
 //!    queried.
 //! 2. *All corners.* For each side of two corners, the outward direction in which both have the same value is
 //!    queried; it finds a corner beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries.
 //!    A curved face becomes an inscribed polygon, whose sides are refined in a fixed order, so that the polygon
 //!    moves with the object.
-//!    Known failure (1 in 100,000): a tilted face of which only an edge and one more corner are within the slop.
+//!    Known failure (1e-5 of faces): tilted faces of which only an edge and one more corner are within the slop.
 //!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
 //! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are queried with half the tilt: on
 //!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it.
@@ -45,8 +45,8 @@ pub const MAX_CORNERS: usize = 9;
 const WIDE_TILT: f64 = 0.25;
 /// Distance, in slops, below which samples may be of one rounded corner. The samples of a ball are 8 slops apart.
 const ROUND_CORNER_SLOPS: f64 = 16.0;
-/// Lean of the outward direction of a side towards its second corner, in tilts. A corner beyond the side by less
-/// than this angle may be missed: 0.01 % of the square of the side in area.
+/// Lean of the outward direction of a side towards its second corner, in tilts. A corner beyond the side by less than
+/// this angle may be missed: at most 1e-4 side² of area.
 const SIDE_LEAN: f64 = 1.0 / 4096.0;
 /// The first three tilt directions, unit.
 pub const THREE_DIRECTIONS: [Vec2; 3] = [

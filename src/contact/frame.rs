@@ -4,8 +4,8 @@
 //! The contact frame: the contact normal and two axes perpendicular to it.
 //!
 //! The axes are a fixed pair perpendicular to [`POLE`], rotated by the shortest rotation from POLE to the
-//! normal or to its opposite, whichever is closer (Rodrigues' rotation formula). So they rotate no faster
-//! than the normal while it stays on one side of POLE, and are the same for the swapped objects.
+//! normal or to its opposite, whichever is closer (Rodrigues' rotation formula). So they rotate no faster than the
+//! normal while POLE · normal keeps its sign, and are the same for the swapped objects.
 
 use crate::contact::polygon::Vec2;
 use crate::math::{POLE, Vec3};

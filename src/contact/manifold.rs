@@ -11,8 +11,8 @@
 //!    rounded surface of radius R is the slop below its highest line.
 //! 3. *Disjoint faces.* If the faces do not overlap in projection, there is one contact: at the midpoint of their
 //!    closest points if these are within the slop of each other, else with the two closest points themselves.
-//! 4. *Reduction.* Keep the deepest point and those that span the largest area with it. Points with an id are kept
-//!    instead while they span at least nine tenths of that area.
+//! 4. *Reduction.* Keep the deepest point and those that span the largest area with it. Points with old ids are kept
+//!    instead if they span at least nine tenths of that area.
 
 use crate::contact::face::{Face, MAX_CORNERS, faces};
 use crate::contact::fixed_vec::FixedVec;

@@ -41,7 +41,7 @@ use crate::mpr::portal::KNOWN_LEVEL;
 /// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
 /// the inserted points of deep pairs (boxes: 19.7k instead of 12.7k instructions).
 const GAIN_REL: f64 = 0.6;
-/// The tolerance, in sizes of D, up to which interpolated planes are not exact enough.
+/// The tolerance, in sizes of D, below which interpolated planes are too inexact.
 const EXACT_PLANES_REL: f64 = 1e-11;
 
 /// The limits of a query.

@@ -3,8 +3,8 @@
 
 //! The global minimum of the penetration depth, from start to end.
 //!
-//! 1. *Separating axis*: evaluate the first direction, that of the warm state or the *ray*, from the interior point to
-//!    the origin. Most queries of separated objects end here.
+//! 1. *Separating axis*: evaluate the first direction: the warm state's or the *ray* (centers to origin, else
+//!    `first_dir`). Most queries of separated objects end here.
 //! 2. *Interior point*: the difference of the centers if they are given; else the middle of the
 //!    support points along the ray and opposite to it, which is always in D.
 //! 3. *Portal*: discovery and refinement ([`crate::mpr::portal`]).
@@ -103,7 +103,7 @@ const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
 /// more proofs end at the support limit.
 const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The number of iterations above which D counts as curved at the minimum ([`WarmKind::CurvedOverlap`]).
-const MAX_POLYTOPE_ITERATIONS: u64 = 3;
+const MAX_POLYHEDRON_ITERATIONS: u64 = 3;
 
 /// Buffers for the largest polytopes. All bytes zero is a valid value.
 pub struct EpaBuffers {
@@ -236,7 +236,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     }
     let UpperBound { dir, depth, .. } = solver.query.upper;
     let radius = solver.fit.confirmed_radius();
-    let is_round = solver.iterations > MAX_POLYTOPE_ITERATIONS;
+    let is_round = solver.iterations > MAX_POLYHEDRON_ITERATIONS;
     Ok((status, WarmStart::hit(dir, depth, radius, is_round)))
 }
 

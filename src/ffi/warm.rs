@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Extends libccd's ccd.h by queries that start warm: from the result of the pair's last query.
-//! Made by cbindgen from src/ffi/warm/; edit there.
+//! cbindgen makes include/ccd/warm.h from src/ffi/warm/; edit there.
 //!
 //! Start with ccdPenetration and one ccd_warm_t for each pair, zeroed at first and kept between
 //! frames. The sections:
@@ -26,11 +26,12 @@
 //! in its object.
 //!
 //! Lengths and tolerances are metres. Tolerances are raised to a few units in the last place of the
-//! coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D. A call reads only
-//! the tolerance that it names. max_iterations limits the support points of a query after the first
-//! tetrahedron, all stages together; the library's own limits are 160, 320 for proofs and
-//! 380 for distances; with all stages no query was seen to take more than 400 support points. Object pointers are passed to the callbacks and never dereferenced. Queries are
-//! re-entrant and keep no data except the caller's state.
+//! coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D, which is max |p|
+//! for p in D. A call reads only the tolerance that it names. max_iterations limits the support
+//! points after the first tetrahedron (in ccdPenetrationAlong and ...Planar the portal steps). The
+//! library's own limits are 160, 320 for ...Proven and ...Along, 380 for distances and ...Planar; no
+//! query was seen to take more than 400 support points. Object pointers are passed to the callbacks
+//! and never dereferenced. Queries are re-entrant and keep no data except the caller's state.
 //!
 //! All statements assume convex objects and support functions that return a farthest point. If points
 //! of a support function contradict each other, a call may return CCD_LIMIT, and depth is sound only

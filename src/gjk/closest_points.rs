@@ -4,8 +4,8 @@
 //! The distance of two objects, with a lower and an upper bound, and their closest points: the GJK algorithm
 //! ([`Simplex`]) on known vertices ([`crate::minkowski`]).
 //!
-//! 1. The closest point of the simplex is an upper bound of the distance; −h(n) is a lower one for every
-//!    unit n, because D is behind the support plane of n.
+//! 1. The closest point of the simplex is an upper bound of the distance; −h(n), h being the support function of D,
+//!    is a lower one for every unit n.
 //! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is closer
 //!    to the origin than the simplex.
 //! 3. Query the direction from the simplex to the origin, or the direction in which the sphere fits

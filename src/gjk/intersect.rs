@@ -19,8 +19,8 @@
 //! in one plane) do not intersect, except with `is_planar`.
 //!
 //! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or the support value of n is at most the contact
-//! epsilon. `Ok`: D contains the origin. Limitation: `Ok` is also returned in the undecided case, in which
-//! the origin is within rounding of the surface of D and no queried direction separates.
+//! epsilon. `Ok`: D contains the origin, or (undecided) the origin is within rounding of the surface of D and no
+//! queried direction separates.
 
 use crate::gjk::barycentric;
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact, make_room};

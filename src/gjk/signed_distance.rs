@@ -7,7 +7,7 @@
 //!    penetration depth of overlapping ones. −h(n) is a lower bound for every n.
 //! 2. For separated objects both bounds come from [`closest_points`], for overlapping ones from the global
 //!    minimum of the depth, which the caller provides as a function.
-//! 3. A *margin* is a ball added to an object, which is then called the *core*. It increases h(n) by its
+//! 3. A *margin* is the radius of a ball added to an object, the *core*. It increases h(n) by its
 //!    radius for every n, so the signed distance is exactly that of the cores minus both margins, for
 //!    separated and for overlapping objects.
 //!

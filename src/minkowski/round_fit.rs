@@ -4,8 +4,9 @@
 //! Sphere fits of the two objects, which choose the directions to evaluate. They prove nothing.
 //!
 //! No reference is known to us. Terms: the *core point* of a vertex that was found along n is the vertex less
-//! radius × n; the *core* of D is D without the spheres, and ρ is the sum of the two radii. The *foot* is the point
-//! of a triangle of core points that is closest to the origin. The *gap* is the allowed difference of the bounds.
+//! radius × n; the *core* of D is D without the spheres, and ρ is the sum of the two radii. w is the point of a
+//! triangle of core points that is closest to the origin. The *allowed gap* is the largest difference of the bounds
+//! at which a query stops.
 //!
 //! 1. *Fit.* Two samples (n, p) and (n′, p′) of a sphere of radius ρ lie below each other's support planes by
 //!    ρ |n′ − n|² / 2: with e = n′·(p′ − p) and f = n·(p − p′), e = f and ρ = (e + f) / |n′ − n|². Each new entry
@@ -15,8 +16,8 @@
 //!    w / |w|.
 //! 3. *Confirmation.* A prediction that agrees with the evaluated support value confirms the fit; one that does
 //!    not resets the radii, and after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
-//! 4. *Tilted direction.* With a confirmed fit, the direction of the upper bound is tilted towards a face by the
-//!    angle at which the chord between the corners is as far from the origin as the gap allows.
+//! 4. *Tilted direction.* With a confirmed fit, the direction of the upper bound is tilted towards a face until the
+//!    chord of its support point and the new one is as close to the origin as the allowed gap permits.
 //!
 //! Outputs. [`SphereFit::radius`]: a guess. A direction of [`SphereFit::predict`] or
 //! [`SphereFit::tilted_from_lowest`] must be evaluated; the support value decides.
@@ -71,9 +72,9 @@ pub const PREDICTION_REL_TOL: f64 = 0.2;
 /// searches take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends
 /// at the support limit.
 pub const MAX_FAILED_PREDICTIONS: u32 = 5;
-/// The least k of [`SphereFit::tilted_from_lowest`] for which a second ring of directions is evaluated around the
-/// best one. Below it the second ring is at most three times as wide as the first, and the face normals of EPA give
-/// a ring of that width. Without the limit proofs of category AXIS end at the support limit. Insensitive: 0.33 to
+/// The least k = sqrt(1 − upper / ρ) for which a second ring of directions is evaluated around the best one. Below it
+/// the second ring is at most three times as wide as the first; EPA's face normals give such a ring. Without the
+/// limit proofs of category AXIS end at the support limit. Insensitive: 0.33 to
 /// 0.6.
 const MIN_RING_K: f64 = 0.5;
 /// The largest ratio of the widths of two rings. Measured: without it 11 % more support points in proofs to 1e-10 m

@@ -27,7 +27,7 @@ impl<F: Fn(&Vec3) -> Vec3> SupportMap for F {
 pub struct SupportPoint {
     /// `v1 - v2`, a boundary point of D.
     pub v: Vec3,
-    /// The support point of obj1 along the evaluated direction.
+    /// The vertex of obj1 along the evaluated direction.
     pub v1: Vec3,
     /// The support point of obj2 along the opposite direction.
     pub v2: Vec3,

@@ -3,7 +3,7 @@
 
 //! The penetration depth along a direction.
 //!
-//! [`along`] follows the origin ray to the boundary of D (W. Gao, 2023, Algorithm 1, see [`crate::mpr::gao`]). Upper
+//! [`along`] follows the given ray to the boundary of D (W. Gao, 2023, Algorithm 1, see [`crate::mpr::gao`]). Upper
 //! bound: the first support plane on the ray. Lower bound: the intersection of the ray and the portal, which is
 //! inscribed in D, minus the rounding error; it is valid once the origin is known to be in D.
 //!

@@ -5,8 +5,8 @@
 //! Geometries", 2023, <https://arxiv.org/abs/2304.07357>. Algorithm 3 and, with the shortcut, Algorithms 4
 //! and 5, for n = 3 and n = 2 dimensions.
 //!
-//! 1. *Portal* (Sec. II-C, Algorithm 1): a triangle v1, v2, v3 of support points of D that the origin ray
-//!    {t d, t >= 0} crosses. With T(a, b) = d · (a × b): T(1,2), T(2,3), T(3,1) >= 0, and its normal
+//! 1. *Portal* (Sec. II-C, Algorithm 1): a triangle v1, v2, v3 of support points of D that the ray {t d, t >= 0}
+//!    crosses. With T(a, b) = d · (a × b): T(1,2), T(2,3), T(3,1) >= 0, and its normal
 //!    N = v1×v2 + v2×v3 + v3×v1 points along the ray, N · d >= 0. n = N / |N|.
 //! 2. *Refinement*: the distance along the ray to the portal, |p| = (n · v1) / (n · d), is a lower bound of the
 //!    distance at which the ray leaves D; that to the support plane of n, |q| = (n · s(n)) / (n · d), is an upper
@@ -182,10 +182,10 @@ impl SupportPlane {
     }
 }
 
-/// A portal: three support points whose triangle the origin ray crosses.
+/// A portal: three support points whose triangle the ray crosses.
 #[derive(Clone, Copy)]
 pub struct Portal {
-    /// Unit direction of the origin ray.
+    /// Unit direction of the ray.
     pub ray: Vec3,
     /// The support planes of v1, v2, v3, in the order in which the triangle's normal points
     /// along the ray.
@@ -277,8 +277,7 @@ pub fn rounding(size: f64) -> f64 {
 
 /// Reason why the search along a ray ended.
 pub enum RayEnd {
-    /// The ray leaves D between the portal and this support plane, whose distance is at most
-    /// the tolerance.
+    /// The ray leaves D between the portal and this support plane, at most the tolerance apart.
     Converged(Portal, SupportPlane),
     /// The shortcut of Algorithm 5: the support value of this plane is at most the
     /// distance |p| to the portal along the ray.
@@ -299,7 +298,7 @@ pub enum Until {
     Normal,
     /// The bounds meet along the normal, or the shortcut of Algorithm 5 applies.
     Shortcut,
-    /// The bounds meet along the ray (directed penetration).
+    /// The bounds meet along the ray (query `along`).
     Ray,
 }
 
@@ -343,7 +342,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         Ok(plane)
     }
 
-    /// Follows the origin ray along `first.normal` to the boundary of D, by Algorithm 1 or
+    /// Follows the ray along `first.normal` to the boundary of D, by Algorithm 1 or
     /// Algorithm 5 of the paper.
     pub fn follow(&mut self, first: &SupportPlane) -> Result<RayEnd, Stop> {
         let found = match self.plane_normal {
@@ -517,7 +516,7 @@ mod tests {
             unit(&(v - self.center).component_div(&r2)).unwrap()
         }
 
-        /// Returns the point at which the origin ray along `d` leaves the ellipsoid: the root t > 0 of g(t d).
+        /// Returns the point at which the ray from the origin along `d` leaves the ellipsoid: the root t > 0 of g(t d).
         fn exit(&self, d: &Vec3) -> Vec3 {
             let d_ = d.component_div(&self.radii);
             let c = self.center.component_div(&self.radii);

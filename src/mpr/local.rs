@@ -13,8 +13,8 @@
 //!
 //! 1. *Portal*: find one for the ray ([`discover`]), at first along the start direction, and refine it with known
 //!    differences as long as one is above it. This gives the face of the inner model through which the ray leaves.
-//! 2. *Minimum*: if the foot is in the face, the upper bound is equal to its distance, and the direction of the upper
-//!    bound is in the cone of the face, the direction is a candidate: go to step 6.
+//! 2. *Minimum*: if the foot is in the face, the upper bound is equal to its distance, and its direction is within a
+//!    small angle of the normal of the face, it is a candidate: go to step 6.
 //! 3. *Other valley*: if the face is farther from the origin than the upper bound, the next ray is along the direction
 //!    of the upper bound.
 //! 4. *Prediction* of the sphere fits, else of a Newton step on a smooth D ([`newton_step`]): evaluated if it would
