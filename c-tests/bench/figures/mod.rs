@@ -30,7 +30,7 @@ pub struct Options {
     /// Measure these figures alone, as `coherence`; the others stay as they are.
     #[arg(long)]
     pub only: Vec<String>,
-    /// Where CSV and pictures go.
+    /// Folder of the CSV files and pictures.
     #[arg(long, default_value = OUT)]
     pub out: PathBuf,
 }

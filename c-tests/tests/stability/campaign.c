@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* How often each library fails, by category of pair.
+/* Failure rates of both libraries by category of pair.
  *
  *   campaign [pairs a category [category, -1 all [compatible | proven | local]]]
  *

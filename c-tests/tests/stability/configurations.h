@@ -111,7 +111,7 @@ static const configuration_row_t configuration_rows[] = {
     {"T19 cubes", "coincident cubes", {BOX(1, 1, 1)}, {BOX(1, 1, 1)}, 2, 1e-12, 1e-6, EVERYWHERE},
     {"T19 point", "a point in a box's centre", {BOX(.5, .3, .4)}, {HULL(origin_point)}, .3, 1e-12, 1e-6, EVERYWHERE},
 
-    /* What this project's own users and tests found. */
+    /* Failures found by this project's users and tests. */
     {"U01", "a box's corner on a cylinder's rim", {CYLINDER(0.67214972553380203, 0.31071183401268843),
      TURNED(0.99855106295427354, 0.048532335203084642, 0.023246227922522782, -0.053812323491297345,
             0.90131270477728864, 0.42981349681869718, -9.2267862303379786e-05, -0.43044165765732256,

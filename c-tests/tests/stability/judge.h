@@ -345,10 +345,10 @@ enum {
     FAULTS_FORBIDDEN = ~(FAULT_MISS_SHALLOW | FAULT_OVER | FAULT_UNDER | FAULT_ZERO | FAULT_DIR_BAD | FAULT_TAIL)
 };
 
-/* Where minima are nearly everywhere no proof ends, and the search stops as MPR does. */
+/* Value of criteria_t.surface: nearly every direction is a minimum, so no proof ends and MPR's tolerance holds. */
 enum { ALL_AROUND = 2 };
 
-/* What an answer about a pair is judged by. */
+/* The criteria by which an answer about a pair is judged. */
 typedef struct {
     double size, noise; /* metres; noise: the rounding error of a depth */
     double tol;         /* the query's, metres */
@@ -454,9 +454,9 @@ static inline int is_mpr_minimum(double depth, double least, double tol, double 
     return depth <= fmax(least, 0) + fmax(tol, part * fmax(least, 0)) + noise;
 }
 
-/* A signed distance: its sign is the code's, the plane is as far as reported, the bounds enclose the truth
- * and close up to max_distance, and the points are in the objects, those of a gap its upper bound apart.
- * Where minima form a surface, the distance at the iteration limit is right all the same. */
+/* Judges a signed distance: its sign agrees with the code, the plane is at the reported distance, the bounds
+ * enclose the truth and close up to max_distance, and the points are in the objects; those of a gap are its upper
+ * bound apart. If minima form a surface, the distance at the iteration limit must still be right. */
 static inline int judge_distance(const entry_t *e, const answer_t *x, const shape_t *a, const shape_t *b, const criteria_t *q)
 {
     const truth_t *t = &q->truth;

@@ -129,8 +129,8 @@ typedef struct {
 /* Runs a request (request_t *). What the callbacks throw passes through. */
 void request_run(void *request);
 
-/* Is called with every support point of the program's own queries, and may change it: a program of the tests
- * may define it. */
+/* Hook, called with every support point of the program's own queries, which it may change. Only tests
+ * define it. */
 typedef void (*audit_fn)(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *point);
 extern audit_fn audit_support;
 

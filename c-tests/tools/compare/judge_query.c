@@ -303,7 +303,7 @@ static int request_all(const compare_t *compare, judged_t *s, const answer_t *ow
         count_add(&c->threw, 1);
         return -1;
     }
-    /* Once more: have these requests changed anything? */
+    /* Repeats the first request, to find whether the others have changed its answer. */
     if (request_answer(compare, s, base, &again) != GUARD_RETURNED || !same_answer(s->q->call, own, &s->answer[base])
         || !same_answer(s->q->call, own, &again))
         count_add(&c->memory, 1);
