@@ -9,7 +9,7 @@ set -eu
 cd "$(dirname "$0")/.."
 
 cat <<'END'
-All tests, in 3 steps: about 8 minutes on 2 cores, once packages and crates are
+All tests, in 3 steps: 8 to 14 minutes on 2 cores, once packages and crates are
 there; the first time some minutes more, to fetch and compile them.
 END
 sh c-tests/setup.sh
