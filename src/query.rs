@@ -195,13 +195,26 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let is_minimum =
             self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)?;
         // A local minimum suffices here, so the flag is cleared if the local search confirmed one.
-        hit.limit &= !is_minimum;
+        if hit.limit && is_minimum {
+            hit.limit = false;
+            if wants_pos {
+                hit.pos = self.cold_contact_position(hit, settings.tolerance)?;
+            }
+        }
         if self.centers.is_some() {
             // The lower bound would depend on the caller's centers.
             hit.depth_lower = 0.0;
         }
         hit.iterations += local_iterations;
         Ok(())
+    }
+
+    /// Computes the contact position without known vertices. Not inlined, so that its set is on the stack only here.
+    #[cold]
+    #[inline(never)]
+    fn cold_contact_position(&self, hit: &Penetration, tolerance: f64) -> Result<Vec3, Fault> {
+        let set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
+        self.contact_position(&set, hit, tolerance)
     }
 
     /// Runs the local search. Not inlined, so that its stack frame is released before the global search runs.
