@@ -151,8 +151,10 @@ pub struct Settings {
     /// the last place of the coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size
     /// of the Minkowski difference.
     pub tolerance: Real,
-    /// Limit on the support points after the first tetrahedron (along, planar: portal steps). Own limits: 160, proven
-    /// and along 320, distance and planar 380; no query was seen to take over 400 support points.
+    /// Limit on the support points after the first tetrahedron, in `penetration_along` and
+    /// `penetration_planar` on the portal steps. The library's own limits are 160, 320 for proofs and
+    /// along a direction, 380 for distances and planar queries. No query was seen to take more than 400
+    /// support points.
     pub max_iterations: u64,
     /// The requested results.
     pub want: Want,

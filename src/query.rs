@@ -21,7 +21,7 @@
 //! |---|---|---|---|
 //! | default | global minimum within max(tolerance, 0.1 %); with `limit` an upper bound | proven if the centers lie in their objects | center of pressure; with `limit` the middle of the witness points |
 //! | proven | global minimum within the tolerance; with `limit` an upper bound | proven | as default |
-//! | local | local minimum; with `limit` an upper bound | 0; after a fallback to the global search proven | center of pressure; if neither search converged, the middle of the witness points |
+//! | local | local minimum; with `limit` an upper bound | 0; without centers, after a fallback to the global search, proven | as default |
 //! | incremental | local minimum; with `limit` an upper bound | 0 | as default; in a plane the middle of the witness points |
 //! | directional | depth along the direction; with `limit` an upper bound | along the direction; proven if the centers lie in their objects | the middle of the witness points |
 //!

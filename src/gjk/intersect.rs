@@ -413,12 +413,12 @@ mod tests {
     fn cubes(gap: f64, r: &mut Random) -> [Vec<Vec3>; 2] {
         let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));
         let turn = r.rotation();
-        let aside = Vec3::new(
+        let offset = Vec3::new(
             r.within(-0.5, 0.5) * half.x,
             r.within(-0.5, 0.5) * half.y,
             2.0 * half.z + gap,
         );
-        [Vec3::zeros(), turn * aside].map(|at| placed(&corners(half), &turn, at))
+        [Vec3::zeros(), turn * offset].map(|at| placed(&corners(half), &turn, at))
     }
 
     /// Tests that the results are the same bits at scales that are powers of two, that a miss has a separating
@@ -500,8 +500,8 @@ mod tests {
                     v2: at,
                 };
                 // Boxes exactly above each other, and offset sideways; below: balls.
-                let aside = turn * Vec3::x() * (0.3 * size.x);
-                for by in [Vec3::zeros(), aside] {
+                let offset = turn * Vec3::x() * (0.3 * size.x);
+                for by in [Vec3::zeros(), offset] {
                     let at = up * (2.0 * size.z + gap) + by;
                     let other: Vec<_> = cube.iter().map(|p| p + at).collect();
                     let md = difference(hull(&cube), hull(&other));
