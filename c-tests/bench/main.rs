@@ -12,6 +12,8 @@ mod measuring;
 mod peers;
 
 use clap::{Parser, Subcommand};
+use measuring::libraries::Libraries;
+use measuring::{callgrind, ledger, recorded};
 
 /// Speed and accuracy of penetration depth, this library beside others.
 #[derive(Parser)]
@@ -22,14 +24,11 @@ struct Arguments {
     /// Passed by cargo to every benchmark.
     #[arg(long, hide = true, global = true)]
     bench: bool,
-    /// Set in the process under callgrind.
-    #[arg(long, hide = true, global = true)]
-    counting: bool,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// Writes the support counts and errors with which a test compares changes.
+    /// Writes the support counts, errors, instructions and mispredictions with which a test compares changes.
     Record,
     /// Every chart as CSV and SVG.
     Charts(charts::Options),
@@ -37,17 +36,21 @@ enum Command {
     Redraw(charts::Options),
     /// This library beside other engines, over the recorded contacts; downloads what it can.
     Engines,
-    /// Instructions of a query, as Markdown; runs this program under valgrind.
-    Instructions(charts::instructions::Options),
 }
 
 fn main() {
-    let Arguments { command, counting, .. } = Arguments::parse();
-    match command {
-        Command::Record => measuring::recorded::record(),
+    match Arguments::parse().command {
+        Command::Record => record(),
         Command::Charts(options) => charts::run(&options),
         Command::Redraw(options) => charts::redraw(&options),
-        Command::Engines => charts::engines::run(counting),
-        Command::Instructions(options) => charts::instructions::run(&options, counting),
+        Command::Engines => charts::engines::run(),
+    }
+}
+
+fn record() {
+    let libraries = Libraries::open();
+    ledger::record(&libraries);
+    if !callgrind::is_counting() {
+        recorded::record(&libraries);
     }
 }

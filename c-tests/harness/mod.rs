@@ -190,19 +190,26 @@ pub fn installed(command: &str) -> bool {
     output.is_ok_and(|output| output.status.success())
 }
 
+/// Returns the value of the first line of a file that starts with `key`.
+fn value_in(file: &str, key: &str) -> String {
+    let text = fs::read_to_string(file).unwrap_or_default();
+    let line = text.lines().find(|line| line.starts_with(key));
+    let value = line.and_then(|line| line.split_once(['=', ':']));
+    value.map_or("unknown".to_owned(), |(_, value)| value.replace('"', "").trim().to_owned())
+}
+
 /// Returns the system's release and the processor, for figures measured on this machine.
 pub fn machine() -> String {
-    let after = |file: &str, key: &str| {
-        let text = fs::read_to_string(file).unwrap_or_default();
-        let line = text.lines().find(|line| line.starts_with(key));
-        let value = line.and_then(|line| line.split_once(['=', ':']));
-        value.map_or("unknown".to_owned(), |(_, value)| value.replace('"', "").trim().to_owned())
-    };
-    let release = |key| after("/etc/os-release", key);
+    let release = |key| value_in("/etc/os-release", key);
     let name = release("NAME=");
     let name = name.split(' ').next().unwrap_or_default();
-    let processor = after("/proc/cpuinfo", "model name");
+    let processor = value_in("/proc/cpuinfo", "model name");
     format!("{name} {}, {processor}", release("VERSION_ID="))
+}
+
+/// Returns the maker and family of the processor, by which the C library chooses among its functions.
+pub fn processor_family() -> String {
+    ["vendor_id", "cpu family"].map(|key| value_in("/proc/cpuinfo", key)).join(" ")
 }
 
 /// Returns whether the programs are for another processor than this machine's.

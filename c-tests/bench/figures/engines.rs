@@ -8,11 +8,11 @@ use std::process::Command;
 
 use super::{OUT, Page, figure, results};
 use crate::harness;
-use crate::measuring::csv;
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::{Row, Runner};
 use crate::measuring::methods::{Start, select};
 use crate::measuring::scene::Scene;
+use crate::measuring::{callgrind, csv};
 use crate::peers::{self, Peers};
 
 /// Of every engine whose tolerance is not built in, in metres.
@@ -55,9 +55,9 @@ pub fn draw(page: &Page, rows: &[Row]) {
 }
 
 /// Downloads what engines.sh can, measures all, and writes the table, its numbers and the picture.
-pub fn run(is_counting: bool) {
+pub fn run() {
     let libraries = Libraries::open();
-    if !is_counting {
+    if !callgrind::is_counting() {
         let script = harness::root().join("c-tests/bench/engines.sh");
         if let Err(why) = Command::new("sh").arg(script).arg(peers::engines()).status() {
             println!("nothing downloaded: {why}");
@@ -68,9 +68,13 @@ pub fn run(is_counting: bool) {
     scene.pairs.retain(|pair| pair.truth.depth > 1e-9);
     let mut methods = select(&libraries, &METHODS);
     methods.extend(peers.methods(&libraries));
-    let mut runner = Runner::new(&libraries, 5).with_instructions(EVERY, &["engines"], is_counting);
+    let timed = || Runner::new(&libraries, 5);
+    let mut runner = timed().with_instructions(EVERY, &["engines"]).unwrap_or_else(|why| {
+        println!("instructions not counted: {}", why.lines().last().unwrap_or_default());
+        timed()
+    });
     let mut rows = runner.rows(&scene, methods);
-    if is_counting {
+    if callgrind::is_counting() {
         return;
     }
     peers.print_missing();

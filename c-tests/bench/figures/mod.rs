@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The charts: speed against accuracy, the paper's figures, coherence, instructions and other engines; each as CSV, and
-//! as a picture or a table.
+//! The charts: speed against accuracy, the paper's figures, coherence and other engines, each as CSV and as a picture or a
+//! table; and tables of the recorded costs.
 
 pub mod accuracy;
 pub mod coherence;
 pub mod engines;
 pub mod figure;
-pub mod instructions;
 pub mod paper;
 pub mod results;
 
@@ -18,6 +17,7 @@ use clap::Args;
 use indicatif::{ProgressIterator, ProgressStyle};
 
 use crate::measuring::csv;
+use crate::measuring::ledger::{self, Cost};
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::{Row, Runner};
 use crate::peers::Peers;
@@ -92,7 +92,6 @@ pub fn kind(set: &str) -> String {
 
 /// Draws the pictures and writes the page from the figures that are there.
 pub fn redraw(options: &Options) {
-    // No rows if the file is missing, as instructions.csv without valgrind.
     let read = |name: &str| -> (Page, Vec<Row>) {
         let (machine, rows) = csv::read(&options.out.join(name).with_extension("csv"));
         (Page { out: options.out.clone(), machine }, rows)
@@ -103,11 +102,13 @@ pub fn redraw(options: &Options) {
     paper::draw(&page, &vertices);
     let (page, rows) = read("accuracy");
     accuracy::draw(&page, &rows);
+    let (_, costs) = csv::read::<Cost>(&ledger::file());
     let tables = [
         ("MACHINE", page.machine.clone()),
         ("FASTER", results::times_faster(&rows)),
         ("COHERENCE", results::coherence(&read("coherence").1)),
-        ("INSTRUCTIONS", results::instructions(&read("instructions").1)),
+        ("INSTRUCTIONS", results::instructions(&costs)),
+        ("DEPTHS", results::instructions_by_depth(&costs)),
     ];
     results::write(&page, &tables);
 }
@@ -122,18 +123,11 @@ pub fn run(options: &Options) {
     println!("{machine}");
     peers.print_missing();
     type Measure = fn(&Bench) -> Vec<Row>;
-    let figures: [(&str, Measure); 4] = [
-        ("accuracy", accuracy::measure),
-        ("vertices", paper::measure),
-        ("coherence", coherence::measure),
-        ("instructions", instructions::measure),
-    ];
+    let figures: [(&str, Measure); 3] =
+        [("accuracy", accuracy::measure), ("vertices", paper::measure), ("coherence", coherence::measure)];
     for (name, measure) in figures {
         if options.only.is_empty() || options.only.iter().any(|only| only == name) {
-            let rows = measure(&bench);
-            if !rows.is_empty() {
-                csv::write(&options.out.join(name).with_extension("csv"), machine, &rows);
-            }
+            csv::write(&options.out.join(name).with_extension("csv"), machine, &measure(&bench));
         }
     }
     redraw(options);

@@ -8,8 +8,10 @@ use comfy_table::{Table, presets::ASCII_MARKDOWN};
 use super::Page;
 use super::paper::{AS_PUBLISHED, PAPER};
 use crate::harness;
+use crate::measuring::ledger::Cost;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::Start;
+use crate::measuring::scene::{DEPTHS, KINDS};
 
 /// Returns a table; `|` separates the cells of its head.
 pub fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
@@ -75,19 +77,36 @@ pub fn coherence(rows: &[Row]) -> String {
     markdown(head, lines)
 }
 
-pub fn instructions(rows: &[Row]) -> String {
-    let lines = rows.iter().map(|r| {
-        let [callbacks, solver] = [r.callbacks, r.solver].map(Option::unwrap_or_default);
-        [
-            super::kind(&r.set),
-            r.label(),
-            format!("{:.0}", r.instructions()),
-            format!("{callbacks:.0}"),
-            format!("{solver:.0}"),
-            format!("{:.0}", 100.0 * callbacks / r.instructions()),
-        ]
+/// Returns instructions and, in parentheses, mispredicted branches of a query.
+fn cost(cost: Option<&Cost>) -> String {
+    cost.map_or("-".to_owned(), |c| format!("{:.0} ({:.0})", c.instructions, c.mispredictions))
+}
+
+/// Returns the costs of every call on the recorded contacts.
+pub fn instructions(costs: &[Cost]) -> String {
+    let hits = costs.iter().filter(|c| c.set == "recorded hits");
+    let lines = hits.map(|hit| {
+        let is_miss = |c: &&Cost| (&*c.set, &c.method) == ("recorded misses", &hit.method);
+        let share = format!("{:.0}", 100.0 * hit.callbacks / hit.instructions);
+        [hit.method.clone(), cost(Some(hit)), share, cost(costs.iter().find(is_miss))]
     });
-    markdown("pair|method|instructions|support functions|solver|support functions, %", lines)
+    markdown("call|hit|of it support functions, %|miss", lines)
+}
+
+/// Returns the costs of `ccdMPRPenetration` by kind and depth of the pairs.
+pub fn instructions_by_depth(costs: &[Cost]) -> String {
+    let line = |kind: &str, method: &str| {
+        let of = |depth| {
+            let is_wanted = |c: &&Cost| c.method == method && c.set == format!("{kind} {depth}");
+            cost(costs.iter().find(is_wanted))
+        };
+        let [shallow, medium, deep, near, far] = DEPTHS.map(of);
+        [kind.to_owned(), method.to_owned(), shallow, medium, deep, near, far]
+    };
+    let lines = KINDS
+        .iter()
+        .flat_map(|kind| ["libccd ccdMPRPenetration", "ccdMPRPenetration"].map(|method| line(kind, method)));
+    markdown(&format!("pair|method|{}", DEPTHS.join("|")), lines)
 }
 
 /// Writes the page's tables between their marks.

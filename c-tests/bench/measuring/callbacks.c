@@ -5,6 +5,8 @@
  * these same callbacks. Shapes are opaque to the benchmark. */
 
 #include "harness/pairs.h"
+#include "harness/random.h"
+#include "harness/truth.h"
 #include "tools/record/recording.h"
 
 void bench_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out) { shape_support(obj, dir, out); }
@@ -20,8 +22,12 @@ void bench_pose(const shape_t *s, double pos[3], double rot[9])
     memcpy(rot, s->rot, sizeof s->rot);
 }
 
-/* Mark for a profiler the begin and the end of a part of its output. */
-__attribute__((noinline)) void bench_begin(void) { __asm__ volatile(""); }
+/* Calls f. callgrind counts what runs inside, and begins new counts after bench_end. */
+__attribute__((noinline)) void bench_counted(void (*f)(void *), void *data)
+{
+    f(data);
+    __asm__ volatile(""); /* f returns here: no jump in place of the call */
+}
 
 __attribute__((noinline)) void bench_end(void) { __asm__ volatile(""); }
 
@@ -81,6 +87,84 @@ static size_t read_recording(const recording_t *r, bench_pose_t *pose)
     free(body);
     return k;
 }
+
+/* --- random pairs by kind and depth ----------------------------------------- */
+
+enum { BOXES, HULLS, CAPSULES, CYLINDERS_AND_CONES, ELLIPSOIDS };
+enum { SHALLOW, MEDIUM, DEEP, NEAR, FAR };
+
+enum { HULL_CORNERS = 100 };
+
+/* Makes a shape of 5 to 50 cm with aspect ratios up to 3, turned at random. */
+static shape_t random_shape(rng_t *r, int kind)
+{
+    double rot[9], p[3], u[3], size = rng_log_uniform(r, .05, .5);
+    shape_t s;
+    for (int k = 0; k < 3; k++)
+        p[k] = size * rng_uniform(r, .33, 1);
+    if (kind == HULLS) {
+        ccd_real_t *verts = (ccd_real_t *)malloc(sizeof *verts * 3 * HULL_CORNERS);
+        for (int i = 0; i < 3 * HULL_CORNERS; i++) {
+            if (i % 3 == 0)
+                rng_unit_vector(r, u);
+            verts[i] = (ccd_real_t)(p[i % 3] * u[i % 3]);
+        }
+        s = shape_polytope(verts, HULL_CORNERS);
+    } else {
+        const int round = rng_below(r, 2) ? SHAPE_CYLINDER : SHAPE_CONE;
+        const int type[] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CAPSULE, round, SHAPE_ELLIPSOID};
+        s = shape_make(type[kind], p[0], p[1], p[2]);
+    }
+    rng_rotation(r, rot);
+    shape_turn(&s, rot);
+    return s;
+}
+
+/* Moves b, from where it touches a along u, inwards until they overlap by the given depth or more. Returns the depth that
+ * they have, to a hundredth of the given one. */
+static truth_t push_together(const shape_t *a, shape_t *b, const double u[3], double depth)
+{
+    double at = truth_support_value(a, b, u);
+    shape_t apart = *b;
+    truth_t t;
+    do {
+        *b = apart;
+        shape_shift(b, at, u);
+        t = truth_depth_within(a, b, .01 * depth);
+        at -= depth;
+    } while (t.depth < depth && at > 0);
+    return t;
+}
+
+/* Makes n pairs of a kind. Pair i has the same two shapes at every depth: deep with center near center; else they meet from
+ * the same random direction, and are then moved along their true normal. */
+size_t bench_random(int kind, int depth, size_t n, bench_pose_t **poses)
+{
+    /* depth or gap over the smaller reach */
+    static const double part[][2] = {{1e-3, .02}, {.05, .15}, {0, 0}, {1e-3, .05}, {.3, 2}};
+    bench_pose_t *pose = *poses = new_poses(n);
+    for (size_t i = 0; pose && i < n; i++, pose++) {
+        rng_t r = rng((uint64_t)kind, i);
+        double u[3], least;
+        *pose->a = random_shape(&r, kind);
+        *pose->b = random_shape(&r, kind);
+        least = fmin(shape_reach(pose->a), shape_reach(pose->b));
+        rng_unit_vector(&r, u);
+        pose->motion = i;
+        if (depth == DEEP) {
+            shape_shift(pose->b, least * rng_uniform(&r, 0, .3), u);
+            pose->truth.depth = truth_depth_within(pose->a, pose->b, 1e-3 * least).depth;
+        } else {
+            const truth_t t = push_together(pose->a, pose->b, u, part[MEDIUM][1] * least);
+            const double to = least * rng_log_uniform(&r, part[depth][0], part[depth][1]);
+            pose->truth.depth = depth < DEEP ? to : -to;
+            shape_shift(pose->b, t.depth - pose->truth.depth, t.n);
+        }
+    }
+    return pose ? n : 0;
+}
+
+/* --- files -------------------------------------------------------------------- */
 
 /* Reads the poses of a pair set or of a recording. Returns their number, 0 on failure. Nothing is ever freed. */
 size_t bench_scene(const char *path, bench_pose_t **poses)

@@ -33,7 +33,8 @@ pub struct Callbacks {
     pub calls: unsafe extern "C-unwind" fn(*const c_void) -> c_ulong,
     pose: unsafe extern "C-unwind" fn(*const c_void, *mut f64, *mut f64),
     pub scene: unsafe extern "C-unwind" fn(*const c_char, *mut *mut Pair) -> usize,
-    pub begin: unsafe extern "C-unwind" fn(),
+    pub random: unsafe extern "C-unwind" fn(c_int, c_int, usize, *mut *mut Pair) -> usize,
+    pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
     pub end: unsafe extern "C-unwind" fn(),
 }
 
@@ -55,6 +56,8 @@ pub struct Libraries {
     pub ours: &'static Library,
     /// One line: date, system, processor, libraries, compiler and flags.
     pub machine: String,
+    /// One line: what instructions of a query depend on besides the source: compilers, flags, processor family.
+    pub toolchain: String,
     /// Folder of compiled helpers.
     work: tempfile::TempDir,
 }
@@ -113,18 +116,20 @@ impl Libraries {
                 calls: function(object, "bench_calls"),
                 pose: function(object, "bench_pose"),
                 scene: function(object, "bench_scene"),
-                begin: function(object, "bench_begin"),
+                random: function(object, "bench_random"),
+                counted: function(object, "bench_counted"),
                 end: function(object, "bench_end"),
             }
         };
+        let rustc = output_of(Command::new("rustc").arg("--version"));
         let machine = format!(
-            "{}, {}, {} cores; {implementation} ({}, release), beside {system_file}; callbacks: {compiler}",
+            "{}, {}, {} cores; {implementation} ({rustc}, release), beside {system_file}; callbacks: {compiler}",
             output_of(Command::new("date").args(["-u", "+%F"])),
             harness::machine(),
             std::thread::available_parallelism().map_or(0, usize::from),
-            output_of(Command::new("rustc").arg("--version")),
         );
-        Self { callbacks, system, ours, machine, work }
+        let toolchain = format!("{rustc}; callbacks: {compiler}; {}", harness::processor_family());
+        Self { callbacks, system, ours, machine, toolchain, work }
     }
 
     /// Returns the settings of a query of this library, or of system libccd, over the benchmark's callbacks.

@@ -38,6 +38,8 @@ pub struct Row {
     /// Instructions of a query in the support functions, and in the solver.
     pub callbacks: Option<f64>,
     pub solver: Option<f64>,
+    /// Mispredicted branches of a query in both.
+    pub mispredictions: Option<f64>,
     /// |depth - truth| over all overlaps; one that is missed counts as depth 0.
     pub mean_error: f64,
     pub max_error: f64,
@@ -89,27 +91,26 @@ pub struct Runner<'a> {
     every: usize,
     /// Counts in the order of the methods, if instructions are counted.
     counts: Option<vec::IntoIter<Count>>,
-    /// This process is the one under callgrind: it runs the methods and measures nothing itself.
-    is_counting: bool,
 }
 
 impl<'a> Runner<'a> {
     pub fn new(libraries: &'a Libraries, repetitions: usize) -> Self {
-        Self { libraries, repetitions, every: 1, counts: None, is_counting: false }
+        Self { libraries, repetitions, every: 1, counts: None }
     }
 
     /// Also counts instructions on every n-th pair, for which it runs this program under callgrind with the words of a
-    /// command and `--counting`; `is_counting` in that process.
-    pub fn with_instructions(mut self, every: usize, command: &[&str], is_counting: bool) -> Self {
-        let report = |why: String| println!("instructions not counted: {}", why.lines().last().unwrap_or_default());
-        let count = || callgrind::counts(command).map_err(report);
-        self.counts = if is_counting { None } else { count().ok().map(Vec::into_iter) };
-        Self { every, is_counting, ..self }
+    /// command that measures the same. Returns why it cannot.
+    pub fn with_instructions(mut self, every: usize, command: &[&str]) -> Result<Self, String> {
+        self.every = every;
+        if !callgrind::is_counting() {
+            self.counts = Some(callgrind::counts(command)?.into_iter());
+        }
+        Ok(self)
     }
 
-    /// Measures methods on a scene.
+    /// Measures methods on a scene; returns no rows in the process under callgrind, which only runs them.
     pub fn rows(&mut self, scene: &Scene, mut methods: Vec<Method>) -> Vec<Row> {
-        if self.is_counting {
+        if callgrind::is_counting() {
             methods.iter_mut().for_each(|method| callgrind::count(self.libraries, scene, method, self.every));
             return Vec::new();
         }
@@ -119,12 +120,17 @@ impl<'a> Runner<'a> {
             row.ns = times.next();
             if let Some(counts) = &mut self.counts {
                 let count = counts.next().expect("a count for every method");
-                assert!(count.callbacks > 0, "callgrind counted nothing of {}", row.method);
-                let queries = scene.pairs.len().div_ceil(self.every) as f64;
-                let is_inside = matches!(method.entry.interface, Interface::PeerInside);
-                let solver = count.solver + if is_inside { count.program } else { 0 };
-                row.callbacks = Some(count.callbacks as f64 / queries);
-                row.solver = Some(solver as f64 / queries);
+                assert!(count.callbacks.instructions > 0, "callgrind counted nothing of {}", row.method);
+                let pairs = scene.pairs.iter().step_by(self.every);
+                let queries = pairs.filter(|pair| method.is_measured(pair)).count() as f64;
+                let mut solver = count.solver;
+                if matches!(method.entry.interface, Interface::PeerInside) {
+                    solver += count.program;
+                }
+                row.callbacks = Some(count.callbacks.instructions as f64 / queries);
+                row.solver = Some(solver.instructions as f64 / queries);
+                let mispredictions = solver.mispredictions + count.callbacks.mispredictions;
+                row.mispredictions = Some(mispredictions as f64 / queries);
             }
             row
         };
@@ -133,7 +139,7 @@ impl<'a> Runner<'a> {
 }
 
 /// Returns the support value of the Minkowski difference along `dir`.
-fn support_value(libraries: &Libraries, pair: &Pair, dir: Vector3<f64>) -> f64 {
+pub fn support_value(libraries: &Libraries, pair: &Pair, dir: Vector3<f64>) -> f64 {
     let support = |shape, dir: Vector3<f64>| Vector3::from(libraries.callbacks.support_point(shape, dir.into()));
     dir.dot(&(support(pair.a, dir) - support(pair.b, -dir)))
 }
@@ -180,7 +186,7 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
         let before = calls(pair);
         let answer = (method.query)(pair);
         let after = calls(pair);
-        if method.is_warm() && pair.frame == 0 {
+        if !method.is_measured(pair) {
             continue;
         }
         row.queries += 1;

@@ -6,7 +6,9 @@
 use std::ffi::{c_int, c_uint, c_void};
 use std::ptr::null_mut;
 
-use ccd::internals::ffi::{CCD_LIMIT, CCD_WANT_POINTS, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t};
+use ccd::internals::ffi::{
+    CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t,
+};
 use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 use serde::{Deserialize, Serialize};
 
@@ -20,12 +22,14 @@ pub enum Interface {
     YesNo,
     /// Warm state; the call returns 1 or 0.
     YesNoWarm,
-    /// Depth, direction, position.
-    Depth,
+    /// Depth, direction, position, which may be NULL.
+    Depth { has_pos: bool },
     /// Warm state, depth, direction, position.
     DepthWarm,
     /// Warm state, wanted outputs, result.
     Full,
+    /// The distance of pairs that overlap; of others the search ends as soon as they are known to be apart.
+    Distance,
     /// W. Gao's algorithms as published.
     Gao(Until),
     /// Another solver, with a closure of its own.
@@ -44,7 +48,7 @@ pub enum Mark {
 
 /// A row of the table of methods.
 pub struct Entry {
-    /// In tables and pictures; that of a library's call ends with the function.
+    /// In tables and pictures; the first word that begins with ccd is the function of a library's call.
     pub name: &'static str,
     pub interface: Interface,
     /// Red, green, blue.
@@ -78,15 +82,16 @@ const TEAL: (u8, u8, u8) = (13, 148, 136);
 const GREY: (u8, u8, u8) = (107, 114, 128);
 
 /// Every method.
-const METHODS: [Entry; 21] = [
-    entry("libccd ccdMPRPenetration", Interface::Depth, RED, Mark::Triangle),
-    entry("libccd ccdGJKPenetration", Interface::Depth, DARK_RED, Mark::Dot),
+const METHODS: [Entry; 22] = [
+    entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }, RED, Mark::Triangle),
+    entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }, DARK_RED, Mark::Dot),
     entry("libccd ccdMPRIntersect", Interface::YesNo, RED, Mark::Cross),
-    entry("ccdMPRPenetration", Interface::Depth, BLUE, Mark::Triangle),
-    entry("ccdGJKPenetration", Interface::Depth, BLUE, Mark::Dot),
-    entry("ccdMPRIntersect", Interface::YesNo, BLUE, Mark::Cross),
+    entry("ccdMPRPenetration", Interface::Depth { has_pos: false }, BLUE, Mark::Triangle),
+    entry("ccdMPRPenetration, pos", Interface::Depth { has_pos: true }, BLUE, Mark::Triangle),
+    entry("ccdGJKPenetration", Interface::Depth { has_pos: false }, BLUE, Mark::Dot),
     entry("ccdMPRPenetrationWarm", Interface::DepthWarm, BLUE, Mark::Triangle),
-    entry("ccdMPRIntersectWarm", Interface::YesNoWarm, BLUE, Mark::Cross),
+    entry("ccdIntersect", Interface::YesNoWarm, BLUE, Mark::Cross),
+    entry("ccdSignedDistance", Interface::Distance, BLUE, Mark::Cross),
     entry("ccdPenetration", Interface::Full, BLUE, Mark::Ring),
     entry("ccdPenetrationLocal", Interface::Full, AMBER, Mark::Dot),
     entry("ccdPenetrationProven", Interface::Full, GREEN, Mark::Dot),
@@ -163,6 +168,11 @@ impl<'a> Method<'a> {
     pub fn is_warm(&self) -> bool {
         self.start == Start::Warm
     }
+
+    /// Whether a pair is measured: the first frame of a motion has no memory yet.
+    pub fn is_measured(&self, pair: &Pair) -> bool {
+        !(self.is_warm() && pair.frame == 0)
+    }
 }
 
 /// Returns methods of the table that are inside the two libraries, by name, start and tolerance.
@@ -198,15 +208,16 @@ pub fn depth_call(f: Depth, has_pos: bool) -> Call {
     })
 }
 
-/// Finds the call of a row of the table. Those of this library compute no position: its cost is compared with libccd's on
-/// the recorded contacts.
+/// Finds the call of a row of the table.
 pub fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
     type YesNo = unsafe extern "C-unwind" fn(Object, Object, Ccd) -> c_int;
     type YesNoWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm) -> c_int;
     type DepthWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, *mut f64, Point, Point) -> c_int;
     type Full = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, c_uint, *mut ccd_penetration_t) -> c_int;
+    type Distance =
+        unsafe extern "C-unwind" fn(Object, Object, Ccd, f64, f64, f64, Warm, c_uint, *mut ccd_distance_t) -> c_int;
     let library = if entry.is_ours() { libraries.ours } else { libraries.system };
-    let symbol = entry.name.rsplit(' ').next().unwrap_or_default();
+    let symbol = entry.name.split([' ', ',']).find(|word| word.starts_with("ccd")).unwrap_or_default();
     // SAFETY: the table's interfaces are those of the C headers; queries over the callbacks' own shapes.
     unsafe {
         match entry.interface {
@@ -218,7 +229,7 @@ pub fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
                 let f: YesNoWarm = function(library, symbol);
                 Box::new(move |pair, ccd, warm, _| f(pair.a, pair.b, ccd, warm) - 1)
             }
-            Interface::Depth => depth_call(function(library, symbol), !entry.is_ours()),
+            Interface::Depth { has_pos } => depth_call(function(library, symbol), has_pos),
             Interface::DepthWarm => {
                 let f: DepthWarm = function(library, symbol);
                 Box::new(move |pair, ccd, warm, out| {
@@ -228,6 +239,15 @@ pub fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
             Interface::Full => {
                 let f: Full = function(library, symbol);
                 Box::new(move |pair, ccd, warm, out| f(pair.a, pair.b, ccd, warm, CCD_WANT_POINTS, out))
+            }
+            Interface::Distance => {
+                let f: Distance = function(library, symbol);
+                Box::new(move |pair, ccd, warm, out| {
+                    let mut distance = std::mem::zeroed();
+                    let code = f(pair.a, pair.b, ccd, 0.0, 0.0, 0.0, warm, 0, &mut distance);
+                    (out.depth, out.dir) = (-distance.distance, distance.normal);
+                    code
+                })
             }
             _ => panic!("{} is no library's call", entry.name),
         }

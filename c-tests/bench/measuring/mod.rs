@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Libraries side by side, scenes with truth, one table of methods, and one runner. The benchmark (`c-tests/bench`) and the
-//! test of the recorded support counts (`support_counts.rs`) each use a part.
+//! test of the recorded counts (`support_counts.rs`) each use a part.
 
 #![allow(dead_code)]
 
 pub mod callgrind;
 pub mod csv;
 pub mod deep;
+pub mod ledger;
 pub mod libraries;
 pub mod measure;
 pub mod methods;

@@ -83,9 +83,8 @@ pub fn measure(libraries: &Libraries) -> Vec<Row> {
 }
 
 /// Writes the file anew from what is measured now.
-pub fn record() {
-    let libraries = Libraries::open();
-    let recorded = measure(&libraries).into_iter().map(|row| Recorded {
+pub fn record(libraries: &Libraries) {
+    let recorded = measure(libraries).into_iter().map(|row| Recorded {
         set: row.set,
         method: row.method,
         start: row.start,

@@ -37,7 +37,12 @@ pub struct Pair {
     pub frame: usize,
 }
 
+/// Kinds and depths of random pairs, in the order of `bench_random` in `callbacks.c`.
+pub const KINDS: [&str; 5] = ["boxes", "hulls", "capsules", "cylinders and cones", "ellipsoids"];
+pub const DEPTHS: [&str; 5] = ["shallow", "medium", "deep", "near", "far"];
+
 /// Pairs of one kind.
+#[derive(Clone)]
 pub struct Scene {
     pub name: String,
     pub pairs: Vec<Pair>,
@@ -62,15 +67,30 @@ impl Scene {
         Self::read(libraries, "recorded", &harness::root().join("c-tests/tools/record/contacts.bin"))
     }
 
+    /// Makes pairs of two shapes of a kind at a depth. Normals and guesses are missing.
+    pub fn random(libraries: &Libraries, kind: usize, depth: usize, num_pairs: usize) -> Self {
+        let make = libraries.callbacks.random;
+        let index = |i: usize| i.try_into().expect("a small number");
+        // SAFETY: the indices are those of the tables, which have callbacks.c's order.
+        let pairs = Self::pairs(|poses| unsafe { make(index(kind), index(depth), num_pairs, poses) });
+        Self { name: format!("{} {}", KINDS[kind], DEPTHS[depth]), pairs }
+    }
+
+    /// Returns the pairs that a function of callbacks.c makes.
+    fn pairs(make: impl FnOnce(*mut *mut Pair) -> usize) -> Vec<Pair> {
+        let mut poses = null_mut();
+        match make(&mut poses) {
+            0 => Vec::new(),
+            // SAFETY: the contract of callbacks.c: so many poses, which are never freed.
+            count => unsafe { std::slice::from_raw_parts(poses, count).to_vec() },
+        }
+    }
+
     fn read(libraries: &Libraries, name: &str, path: &Path) -> Self {
         let file = CString::new(path.as_os_str().as_bytes()).expect("a path without NUL");
-        let mut poses = null_mut();
-        // SAFETY: the contract of callbacks.c: so many poses, which are never freed.
-        let mut pairs: Vec<Pair> = unsafe {
-            let count = (libraries.callbacks.scene)(file.as_ptr(), &mut poses);
-            assert!(count > 0, "{} is neither a pair set nor a recording", path.display());
-            std::slice::from_raw_parts(poses, count).to_vec()
-        };
+        // SAFETY: a path.
+        let mut pairs = Self::pairs(|poses| unsafe { (libraries.callbacks.scene)(file.as_ptr(), poses) });
+        assert!(!pairs.is_empty(), "{} is neither a pair set nor a recording", path.display());
         pairs.sort_by_key(|pair| pair.motion);
         let mut last = (usize::MAX, 0);
         let mut position = 0;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Tests what is measured exactly: recorded support counts and errors, which no change may exceed.
+//! Tests what is measured exactly: recorded support counts, errors, instructions and mispredicted branches, which no
+//! change may exceed.
 
 #![cfg(not(feature = "single"))]
 
@@ -10,13 +11,14 @@ mod harness;
 #[path = "mod.rs"]
 mod measuring;
 
-use measuring::csv;
 use measuring::deep::{self, Polytope};
+use measuring::ledger::{self, Cost};
 use measuring::libraries::Libraries;
 use measuring::measure::Runner;
 use measuring::methods::Start;
 use measuring::recorded::{self, Recorded};
 use measuring::scene::Scene;
+use measuring::{callgrind, csv};
 
 /// Compares every set with `support_counts.csv`, which `cargo bench -p charts -- record` writes anew.
 #[test]
@@ -44,6 +46,40 @@ fn no_set_needs_more_supports_or_errs_more() {
         }
     }
     assert!(lost.is_empty(), "{}", lost.join("\n"));
+}
+
+/// Compares every cost with `instruction_counts.csv`, which the same command writes anew. Another toolchain has other
+/// counts: there differences are printed.
+#[test]
+fn no_query_takes_more_instructions() {
+    if !harness::installed("valgrind") || harness::emulated() {
+        println!("skipped: valgrind is not installed, or not for this processor");
+        return;
+    }
+    let libraries = Libraries::open();
+    let command = ["--exact", "no_query_takes_more_instructions", "--test-threads=1"];
+    let rows = ledger::measure(&libraries, &command, false).unwrap_or_else(|why| panic!("not counted: {why}"));
+    if callgrind::is_counting() {
+        return;
+    }
+    let (toolchain, recorded): (_, Vec<Cost>) = csv::read(&ledger::file());
+    let mut raised = Vec::new();
+    for now in &rows {
+        let then = now.find(&recorded);
+        let then = then.unwrap_or_else(|| panic!("not recorded: {} {}", now.set, now.method));
+        let line = now.beside(then);
+        if now != then {
+            println!("{line}");
+        }
+        if now.is_above(then) {
+            raised.push(line);
+        }
+    }
+    if toolchain == libraries.toolchain {
+        assert!(raised.is_empty(), "{}", raised.join("\n"));
+    } else {
+        println!("not judged: recorded with\n{toolchain}\nhere\n{}", libraries.toolchain);
+    }
 }
 
 /// Checks that DEEP's depths are support values, never below the certified minimum, and from 5° nearly always the minimum.
