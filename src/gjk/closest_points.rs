@@ -93,7 +93,7 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         simplex: Simplex::EMPTY,
         to_origin: *start,
         upper: f64::INFINITY,
-        is_prediction_failed: false,
+        was_prediction: false,
     };
     let before = search.query.support_points();
     let end = search.run(goal, start)?;
@@ -121,8 +121,9 @@ struct ClosestPointsSearch<'s, 'q, A, B> {
     to_origin: Vec3,
     /// The distance of the simplex, metres.
     upper: f64,
-    /// True if the last query was a prediction that failed; the next query is then no prediction.
-    is_prediction_failed: bool,
+    /// True if the last query was a prediction; the next query is then none. With a radius that is far too large,
+    /// e.g. of a foreign state, each prediction is confirmed but turns the plane by very little.
+    was_prediction: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
@@ -234,7 +235,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         }
         let bound = self.query.upper;
         self.fit.update(&self.set, bound.index);
-        if core::mem::take(&mut self.is_prediction_failed) {
+        if core::mem::take(&mut self.was_prediction) {
             return Ok(false);
         }
         let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
@@ -245,9 +246,8 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             return Ok(false);
         };
         let sample = self.query.evaluate_signed(&mut self.set, &n)?;
-        self.is_prediction_failed =
-            !(sample.h <= value + PREDICTION_REL_TOL * (bound.depth - value));
-        self.fit.is_confirmed = !self.is_prediction_failed;
+        self.was_prediction = true;
+        self.fit.is_confirmed = sample.h <= value + PREDICTION_REL_TOL * (bound.depth - value);
         Ok(true)
     }
 

@@ -411,7 +411,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         if first.depth < 0.0 {
             return Err(Stop::Separated(first.normal));
         }
-        let side = m.cross(&first.normal);
+        let side = unit(&m.cross(&first.normal)).unwrap_or_else(|| perpendicular(m));
         let off = side.dot(&first.point.v);
         if !(off.abs() > rounding(first.point.magnitude())) {
             return Ok(Err(RayEnd::Vertex));

@@ -2,9 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Judges results (tests/stability/judge.h) from every kind of state: cold, of the same pair, flipped, of
- * another pair, any bytes. Checks how many support calls a state saves, and that it stays on its side.
+ * another pair, any bytes, changed. Checks that every direction that a callback receives is unit, how many support
+ * calls a state saves, and that it stays on its side.
  *
- *   warm_states [pairs a call] */
+ *   warm_states [pairs a call, changed states] */
 
 #include "tests/stability/categories.h"
 
@@ -12,7 +13,7 @@
 
 enum { PAIRS = 400 };
 
-static int pairs = PAIRS;
+static int pairs = PAIRS, changed_states = 10000;
 
 /* The calls that take a state. ccdIntersect runs one of them. */
 static const int calls[] = {CALL_LOCAL, CALL_INCREMENTAL, CALL_PROVEN, CALL_PENETRATION, CALL_ALONG, CALL_PLANAR, CALL_MPR_WARM,
@@ -26,11 +27,20 @@ typedef struct {
     int limited; /* a result reached the support limit */
 } case_t;
 
+static void unit_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    double d[3];
+    to_double(dir, d);
+    CHECK(fabs(truth_dot3(d, d) - 1) <= 16 * real_eps(), "a direction (%g, %g, %g)", d[0], d[1], d[2]);
+    counting_support(obj, dir, out);
+}
+
 static answer_t run_unjudged(case_t *c, int swap, ccd_warm_t *warm)
 {
     shape_t a = swap ? c->pair.b : c->pair.a, b = swap ? c->pair.a : c->pair.b;
-    const ccd_t ccd = counting_query(c->criteria.tol);
+    ccd_t ccd = counting_query(c->criteria.tol);
     ccd_vec3_t dir;
+    ccd.support1 = ccd.support2 = unit_support;
     for (int k = 0; k < 3; k++)
         dir.v[k] = (ccd_real_t)(swap ? -c->dir[k] : c->dir[k]);
     return call_guarded(&c->call, &a, &b, &ccd, warm, &dir, call_limit(&c->call));
@@ -134,6 +144,18 @@ static void make_random_state(int kind, ccd_warm_t *warm)
     }
 }
 
+/* Changes one to three fields of a state: to another direction, to a length from 0 to infinity, or by one bit. */
+static void change_state(rng_t *d, ccd_warm_t *warm)
+{
+    for (int changes = 1 + rng_below(d, 3); changes > 0; changes--)
+        switch (rng_below(d, 4)) {
+        case 0: rng_unit_vector(d, warm->reals); break;
+        case 1: warm->words[0] = (unsigned)rng_below(d, 5); break;
+        case 2: ((unsigned char *)warm)[rng_below(d, sizeof *warm)] ^= (unsigned char)(1 << rng_below(d, 8)); break;
+        default: warm->reals[3 + rng_below(d, 3)] = pow(10, rng_uniform(d, -330, 310));
+        }
+}
+
 /* --- states -------------------------------------------------------------------------- */
 
 typedef struct {
@@ -212,6 +234,27 @@ static void check_states(int call)
     CHECK(n.hits > PAIRS / 4, "%s: %d hits", name, n.hits);
 }
 
+/* Runs pairs from their own state, changed, and from the state after that. */
+static void check_changed_states(void)
+{
+    enum { STATES_A_PAIR = 50 };
+    static case_t c;
+    for (int done = 0; done < changed_states; done += STATES_A_PAIR) {
+        ccd_warm_t own, warm;
+        memset(&own, 0, sizeof own);
+        const int i = done / STATES_A_PAIR;
+        rng_t d = rng(6000, (uint64_t)i);
+        make_case(&c, calls[i % (int)(sizeof calls / sizeof *calls)], i);
+        run_judged(&c, 0, &own, "a cold state");
+        for (int k = 0; k < STATES_A_PAIR; k++) {
+            warm = own;
+            change_state(&d, &warm);
+            run_judged(&c, 0, &warm, "a changed state");
+            run_judged(&c, 0, &warm, "the state after a changed state");
+        }
+    }
+}
+
 /* Lowers a tilted plate through a slab by 1 mm a frame. The least depth changes sides half way; the local search
  * stays on the side of its state, and a depth along a direction on that side. */
 static void check_sides(void)
@@ -253,8 +296,10 @@ static void check_sides(void)
 int main(int argc, char **argv)
 {
     pairs = argc > 1 ? atoi(argv[1]) : pairs;
+    changed_states = argc > 2 ? atoi(argv[2]) : changed_states;
     catch_crashes();
     check_sides();
+    check_changed_states();
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
         check_states(calls[i]);
     return checks_end();

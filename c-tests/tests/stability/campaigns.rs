@@ -9,6 +9,7 @@
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
+//! | `states` | every kind of warm start state (`../extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
 //! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | digests that `cmake/packages/cross.sh` compares between processors | |
@@ -17,7 +18,7 @@
 mod harness;
 mod programs;
 
-use harness::Executable;
+use harness::{Executable, Program};
 use programs::{determinism, program};
 
 /// Runs a program in the terminal with the given arguments, then the defaults of the others.
@@ -28,6 +29,11 @@ fn show(program: &Executable, given: &[String], defaults: &[&str]) {
     }
 }
 
+fn states() -> Executable {
+    let program = Program::c("warm_states").source("tests/extension/warm_states.c");
+    program.flag("-DOURS_ALONE").link_ours_shared().build()
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_default();
@@ -36,6 +42,7 @@ fn main() {
         "rates" => show(&program("campaign"), &given, &["2000"]),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::alone("wide"), &given, &["1000", "-1", "0", "1"]),
+        "states" => show(&states(), &given, &["400", "1000000"]),
         "worst" => show(&program("worst_case"), &given, &["1000000", "1"]),
         #[cfg(not(feature = "single"))]
         "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
@@ -43,7 +50,7 @@ fn main() {
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
-            eprintln!("usage: campaigns rates|wide|worst|truth|ledger|determinism [ARGUMENT...]");
+            eprintln!("usage: campaigns rates|wide|worst|states|truth|ledger|determinism [ARGUMENT...]");
             std::process::exit(2);
         }
     }
