@@ -355,7 +355,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             };
             let mut query = SupportQuery::new(&self.difference, interior);
             let first = query.evaluate_first(&request.first_dir())?;
-            self.run_global_from_first(query, &first, &request, arena, state, wants_pos, hit)
+            self.run_global_from_first(&mut query, &first, &request, arena, state, wants_pos, hit)
         })
     }
 
@@ -368,7 +368,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     )]
     fn run_global_from_first(
         &self,
-        mut query: SupportQuery<'_, A, B>,
+        query: &mut SupportQuery<'_, A, B>,
         first: &SupportPoint,
         request: &EpaRequest<'_>,
         arena: Option<&mut dyn Arena>,
@@ -378,7 +378,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<bool, Stop> {
         let mut set = VertexSet::EMPTY;
         let (status, warm) =
-            epa::penetration::penetration(&mut query, first, request, arena, &mut set, hit)?;
+            epa::penetration::penetration(query, first, request, arena, &mut set, hit)?;
         if self.keeps_state {
             *state = self.with_centers(warm);
         }

@@ -261,10 +261,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let portal = self.find_portal(set, &ray)?;
         // Not into a full set: it would replace the last entry, which may be a corner.
         if let Some((dir, point)) = opposite.as_ref().filter(|_| !set.is_full()) {
-            let index = set.push(dir, point);
-            if self.query.upper.dir == *dir {
-                self.query.upper.index = index;
-            }
+            set.push(dir, point);
         }
         if let Some(portal) = &portal {
             if self.certify(set, portal, is_warm)? {
@@ -287,9 +284,6 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let index = usize::from(sample.pair.a);
         let opposite = (set.dir(index), set.point(sample.pair));
         set.truncate(index);
-        if self.query.upper.index == index {
-            self.query.upper.index = 0;
-        }
         self.interior = newest.towards(&opposite.1, 0.5);
         if let Some(n) = normalise_unscaled(&-self.interior.v) {
             let turn2 = (n - *ray).norm_squared();
@@ -373,7 +367,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         corners: &[Vertex; 3],
         normal: &Vec3,
     ) -> Result<(), Stop> {
-        let upper = self.query.upper;
+        let upper = &self.query.upper;
         let predicted = match self.fit.is_confirmed {
             true => self.fit.predict(set, corners, &upper.dir),
             false => normalise_unscaled(normal).map(|n| (n, 0.0)),
@@ -425,7 +419,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             }
         }
         if self.gap == f64::INFINITY {
-            self.write_upper_bound(set);
+            self.write_upper_bound();
             status = Status::Rounding;
         }
         Ok(status)
@@ -673,40 +667,36 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     fn write_result_on_face<const N: usize>(
         &mut self,
         set: &VertexSet<N>,
-        mut face: [Vertex; 3],
+        face: [Vertex; 3],
         lower: f64,
         gap: f64,
     ) {
-        let upper = self.query.upper;
         self.query.is_inconsistent |= self.query.has_contradiction(set);
+        let upper = &self.query.upper;
         let foot = upper.dir * upper.depth;
-        let closest = |[a, b, c]: &[Vertex; 3]| barycentric::triangle(&foot, &a.w, &b.w, &c.w);
-        let mut best = closest(&face);
+        let closest = |[a, b, c]: &[Vec3; 3]| barycentric::triangle(&foot, a, b, c);
+        let [a, b, c] = &face;
+        let corners = [a.w, b.w, c.w];
+        let mut best = closest(&corners);
+        let mut replaced = None;
         if best.distance2 > gap * lesser(gap, upper.depth) {
-            let pair = VertexSet::<N>::pair_of_entry(upper.index);
-            let support = Vertex {
-                w: set.difference(pair),
-                pair,
-            };
-            let corners = face;
-            for replacement in [support, self.interior_vertex()] {
+            for point in [&upper.point, &self.interior] {
                 for i in 0..3 {
                     let mut triangle = corners;
-                    triangle[i] = replacement;
+                    triangle[i] = point.v;
                     let other = closest(&triangle);
                     if other.distance2 < best.distance2 {
-                        (best, face) = (other, triangle);
+                        (best, replaced) = (other, Some((i, *point)));
                     }
                 }
             }
         }
-        let weights = best.weights;
         let mut points = [Vec3::zeros(); 2];
-        for (weight, v) in weights.iter().zip(&face) {
-            let point = if v.pair.is_interior() {
-                self.interior
-            } else {
-                set.point(v.pair)
+        for (i, (weight, v)) in best.weights.iter().zip(&face).enumerate() {
+            let point = match replaced {
+                Some((k, point)) if k == i => point,
+                _ if v.pair.is_interior() => self.interior,
+                _ => set.point(v.pair),
             };
             points[0] += point.v1 * *weight;
             points[1] += point.v2 * *weight;
@@ -715,14 +705,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     }
 
     /// Writes a result with only the upper bound.
-    fn write_upper_bound<const N: usize>(&mut self, set: &VertexSet<N>) {
-        let point = set.point(VertexSet::<N>::pair_of_entry(self.query.upper.index));
+    fn write_upper_bound(&mut self) {
+        let point = self.query.upper.point;
         self.write_result(0.0, [point.v1, point.v2]);
     }
 
     #[inline(always)]
     fn write_result(&mut self, lower: f64, [point1, point2]: [Vec3; 2]) {
-        let upper = self.query.upper;
+        let upper = &self.query.upper;
         let lower = lower.min(upper.depth);
         self.gap = upper.depth - lower;
         *self.hit = Penetration {

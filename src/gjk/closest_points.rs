@@ -230,11 +230,11 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     /// was a useful prediction. `dir`: unit direction from the simplex to the origin.
     fn query_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
-            compact(self.query, &mut self.set, self.simplex.slots());
+            compact(&mut self.set, self.simplex.slots());
             self.fit.restart();
         }
         let bound = self.query.upper;
-        self.fit.update(&self.set, bound.index);
+        self.fit.update(&self.set, &bound);
         if core::mem::take(&mut self.was_prediction) {
             return Ok(false);
         }

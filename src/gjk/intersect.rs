@@ -206,7 +206,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
             if !(length > 0.0) {
                 return Ok(None);
             }
-            make_room(query, set, &mut portal);
+            make_room(set, &mut portal);
             w = query.evaluate(set, &(n / length))?.vertex();
         }
         if !(n.dot(&w.w) - offset > query.scale.height_eps() * length) {
@@ -237,7 +237,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         let is_corner = |w: &Vertex| simplex.corners().iter().any(|c| c.pair == w.pair);
         let is_beyond = dir.dot(&w.w) > query.scale.contact_eps();
         if set.len() == 0 || !is_beyond || is_corner(&w) {
-            make_room(query, set, simplex.slots());
+            make_room(set, simplex.slots());
             w = query.evaluate(set, &dir)?.vertex();
         }
         let contact_eps = query.scale.contact_eps();
@@ -246,7 +246,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
             if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
                 // The origin is in the plane of the old face within rounding: query the other side of D.
-                make_room(query, set, simplex.slots());
+                make_room(set, simplex.slots());
                 query.evaluate(set, &-dir)?;
             }
             let corners = simplex.tetrahedron();
@@ -288,7 +288,7 @@ fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
     interior: Option<&SupportPoint>,
     dir: &Vec3,
 ) -> Result<Enclosing, Stop> {
-    compact(query, set, &mut corners);
+    compact(set, &mut corners);
     let simplex = Enclosing::new(set, &corners, interior);
     let [a, b, c, d] = &simplex.corners;
     let middle = a.towards(b, 0.5).towards(&c.towards(d, 0.5), 0.5);

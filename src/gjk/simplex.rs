@@ -21,8 +21,6 @@
 //! - The new point need not be a support point: step 1 holds for any known difference farther along n.
 
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
-use crate::minkowski::query::SupportQuery;
-use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
@@ -320,26 +318,18 @@ fn is_clear_of(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
 
 /// Makes room for another entry: compacts a full set.
 #[inline(always)]
-pub fn make_room<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    corners: &mut [Vertex],
-) {
+pub fn make_room<const N: usize>(set: &mut VertexSet<N>, corners: &mut [Vertex]) {
     if set.is_full() {
-        compact(query, set, corners);
+        compact(set, corners);
     }
 }
 
-/// Removes all entries except those of the corners, at most four, and that of the upper bound. Indices change.
+/// Removes all entries except those of the corners, at most four. Indices change.
 #[cold]
 #[inline(never)]
-pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    corners: &mut [Vertex],
-) {
+pub fn compact<const N: usize>(set: &mut VertexSet<N>, corners: &mut [Vertex]) {
     let mut kept = VertexSet::<N>::EMPTY;
-    let mut olds = [usize::MAX; 9];
+    let mut olds = [usize::MAX; 8];
     let mut keep = |old: usize| {
         if let Some(new) = olds.iter().position(|o| *o == old) {
             return new;
@@ -351,7 +341,6 @@ pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
         }
         new
     };
-    query.upper.index = keep(query.upper.index);
     for corner in corners {
         if !corner.pair.is_interior() {
             let [a, b] = [corner.pair.a, corner.pair.b].map(|i| keep(i.into()) as u16);
@@ -365,6 +354,7 @@ pub fn compact<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::gjk::barycentric;
+    use crate::minkowski::query::SupportQuery;
     use crate::shapes::Random;
 
     /// Tests corners in a plane with the origin, and close to each other.
@@ -461,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn compacted_set_keeps_corners_and_upper_bound() {
+    fn compacted_set_keeps_corners() {
         let mut r = Random::new(44);
         let md = crate::shapes::difference(
             crate::shapes::ball(Vec3::zeros(), 1.0),
@@ -482,12 +472,11 @@ mod tests {
                 let w = set.difference(pair);
                 simplex.add(Vertex { w, pair }, 1e-14, 100.0);
             }
-            compact(&mut query, &mut set, simplex.slots());
-            assert!(set.len() < 10);
+            compact(&mut set, simplex.slots());
+            assert!(set.len() < 9);
             for corner in simplex.corners() {
                 assert_eq!(corner.w, set.difference(corner.pair));
             }
-            assert_eq!(set.dir(query.upper.index), query.upper.dir);
         }
     }
 }

@@ -86,8 +86,8 @@ pub struct UpperBound {
     pub depth: f64,
     /// Its direction, unit.
     pub dir: Vec3,
-    /// The index of its entry in the vertex set.
-    pub index: usize,
+    /// The support point along it. Held here, because entries of a vertex set are moved and removed.
+    pub point: SupportPoint,
 }
 
 /// The state of a query: the support function of one pair and the results of its evaluations.
@@ -118,7 +118,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
             upper: UpperBound {
                 depth: f64::INFINITY,
                 dir: Vec3::new(1.0, 0.0, 0.0),
-                index: 0,
+                point: SupportPoint::default(),
             },
             interior: interior.map(|point| point.v),
             is_inconsistent: false,
@@ -157,7 +157,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         if !self.scale.is_depth(h) {
             return Err(Stop::Separated(dir));
         }
-        self.store_upper(&dir, h, 0);
+        self.store_upper(&dir, h, &point);
         Ok(point)
     }
 
@@ -213,7 +213,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         h: f64,
     ) -> SupportSample {
         let index = set.push(dir, point);
-        self.store_upper(dir, h, index);
+        self.store_upper(dir, h, point);
         SupportSample {
             w: point.v,
             h,
@@ -223,12 +223,12 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
 
     /// Stores a support value if it is the least, and tests the interior point against its support plane.
     #[inline(always)]
-    fn store_upper(&mut self, dir: &Vec3, h: f64, index: usize) {
+    fn store_upper(&mut self, dir: &Vec3, h: f64, point: &SupportPoint) {
         if h < self.upper.depth {
             self.upper = UpperBound {
                 depth: h,
                 dir: *dir,
-                index,
+                point: *point,
             };
         }
         if let Some(interior) = self.interior {
@@ -342,9 +342,17 @@ mod tests {
         assert_eq!((first.h, first.w), (2.0, set.difference(first.pair)));
         let second = query.evaluate(&mut set, &Vec3::x()).unwrap();
         assert_eq!(second.w, Vec3::x() * 0.5);
-        let UpperBound { depth, dir, index } = query.upper;
-        assert_eq!((depth, dir, index), (0.5, Vec3::x(), 1));
+        let UpperBound { depth, dir, point } = query.upper;
+        assert_eq!((depth, dir, point.v), (0.5, Vec3::x(), second.w));
         assert_eq!(query.support_points(), 2);
+        // The upper bound does not depend on the set.
+        set.truncate(1);
+        query.evaluate(&mut set, &Vec3::y()).unwrap();
+        let UpperBound { depth, dir, point } = query.upper;
+        assert_eq!(
+            (depth, dir, point.v1 - point.v2),
+            (0.5, Vec3::x(), second.w)
+        );
     }
 
     #[test]

@@ -102,6 +102,40 @@ struct QueryDirection {
     value: f64,
 }
 
+/// A sample that is compared with another one.
+struct FitSample {
+    /// Unit.
+    dir: Vec3,
+    /// x, y and z: obj1's vertex, and minus obj2's.
+    coords: [[f64; 2]; 3],
+}
+
+impl FitSample {
+    #[inline(always)]
+    fn of_entry<const N: usize>(set: &VertexSet<N>, i: usize) -> Self {
+        Self {
+            dir: set.dir(i),
+            coords: set.coords(i),
+        }
+    }
+
+    #[inline(always)]
+    fn of_upper(upper: &UpperBound) -> Self {
+        let (v1, v2) = (upper.point.v1, upper.point.v2);
+        Self {
+            dir: upper.dir,
+            coords: [[v1.x, -v2.x], [v1.y, -v2.y], [v1.z, -v2.z]],
+        }
+    }
+
+    /// Returns the center of a sphere of this radius through the vertex of an object, 0 or 1; minus the center for
+    /// obj2, 1.
+    #[inline(always)]
+    fn center(&self, object: usize, radius: f64) -> Vec3 {
+        Vec3::from(self.coords.map(|c| c[object % 2])) - self.dir * radius
+    }
+}
+
 /// The sphere fits of a pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SphereFit {
@@ -124,20 +158,26 @@ impl SphereFit {
         self.radius[0] + self.radius[1]
     }
 
-    /// Compares the new entries of the set with entry `lowest`, that of the upper bound. An exact fit compares each
-    /// with the previous entry too. If an object has several spheres, the one at entry `lowest` is taken.
-    pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, lowest: usize) {
+    /// Compares the new entries of the set with the sample of the upper bound. An exact fit compares each with the
+    /// previous entry too. If an object has several spheres, the one of the upper bound is taken.
+    pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, upper: &UpperBound) {
         let tolerance = if self.is_exact { &EXACT } else { &LOOSE };
+        let lowest = FitSample::of_upper(upper);
         while self.compared < set.len() {
             let i = self.compared;
             self.compared += 1;
-            let others = [i.saturating_sub(1), lowest];
-            for k in others.into_iter().skip(usize::from(!self.is_exact)) {
-                let found = fit_radii(set, k, i, tolerance);
-                for (radius, found) in self.radius.iter_mut().zip(found) {
-                    if found > 0.0 && (k == lowest || !(*radius > 0.0)) {
-                        *radius = found;
-                    }
+            let entry = FitSample::of_entry(set, i);
+            let mut previous = [0.0; 2];
+            if self.is_exact {
+                let other = FitSample::of_entry(set, i.saturating_sub(1));
+                previous = fit_radii(&other, &entry, tolerance);
+            }
+            let found = fit_radii(&lowest, &entry, tolerance);
+            for ((radius, found), previous) in self.radius.iter_mut().zip(found).zip(previous) {
+                if found > 0.0 {
+                    *radius = found;
+                } else if !(*radius > 0.0) {
+                    *radius = previous;
                 }
             }
         }
@@ -271,7 +311,7 @@ impl SphereFit {
         upper: &UpperBound,
         gap: f64,
     ) -> QueryDirection {
-        self.update(set, upper.index);
+        self.update(set, upper);
         let is_used = self.failures < MAX_FAILED_PREDICTIONS;
         let predicted = is_used.then(|| self.predict(set, corners, normal));
         if let Some((dir, value)) = predicted.flatten() {
@@ -310,23 +350,30 @@ impl SphereFit {
         pair: VertexPair,
         tolerance: f64,
     ) -> bool {
-        let [r1, r2] = self.radius;
-        let max_distance = lesser(EXACT_CENTER_REL * self.sum(), tolerance);
-        let center1 = |i: usize| set.vertex1(i) - set.dir(i) * r1;
-        let center2 = |i: usize| set.vertex2(i) + set.dir(i) * r2;
-        let (a, b) = (usize::from(pair.a), usize::from(pair.b));
-        let is_other =
-            |i: usize, k: usize| k != i && (set.dir(k) - set.dir(i)).norm_squared() > 1e-8;
-        let is_confirmed = |radius: f64, i: usize, center: &dyn Fn(usize) -> Vec3| {
-            let at = center(i);
-            !(radius > 0.0)
-                || (0..set.len()).any(|k| is_other(i, k) && (center(k) - at).norm() <= max_distance)
-        };
-        is_confirmed(r1, a, &center1) && is_confirmed(r2, b, &center2)
+        let samples = [pair.a, pair.b].map(|i| FitSample::of_entry(set, i.into()));
+        self.are_centers_confirmed(set, &samples, tolerance)
     }
 
-    /// Returns whether two directions confirm the spheres of a result: those of the upper bound's entry, and those of
-    /// the corners with a weight in the witness points.
+    /// Returns the same for the sphere of obj1 at the first sample and that of obj2 at the second.
+    fn are_centers_confirmed<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        samples: &[FitSample; 2],
+        tolerance: f64,
+    ) -> bool {
+        let max_distance = lesser(EXACT_CENTER_REL * self.sum(), tolerance);
+        (samples.iter().zip(self.radius).enumerate()).all(|(object, (sample, radius))| {
+            let confirms = |k: usize| {
+                let other = FitSample::of_entry(set, k);
+                let distance = other.center(object, radius) - sample.center(object, radius);
+                (other.dir - sample.dir).norm_squared() > 1e-8 && distance.norm() <= max_distance
+            };
+            !(radius > 0.0) || (0..set.len()).any(confirms)
+        })
+    }
+
+    /// Returns whether two directions confirm the spheres of a result: those of the upper bound, and those of the
+    /// corners with a weight in the witness points.
     pub fn are_spheres_confirmed<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -335,7 +382,8 @@ impl SphereFit {
         tolerance: f64,
     ) -> bool {
         let weights = self.weights(set, corners);
-        self.is_confirmed_twice(set, VertexSet::<N>::pair_of_entry(upper.index), tolerance)
+        let lowest = [(); 2].map(|()| FitSample::of_upper(upper));
+        self.are_centers_confirmed(set, &lowest, tolerance)
             && (weights.iter().zip(corners)).all(|(weight, v)| {
                 !(*weight > 0.0) || self.is_confirmed_twice(set, v.pair, tolerance)
             })
@@ -367,19 +415,13 @@ impl SphereFit {
     }
 }
 
-/// Returns the radii of the spheres of obj1 and obj2 on which two entries lie; 0 for an object without one.
+/// Returns the radii of the spheres of obj1 and obj2 on which two samples lie; 0 for an object without one.
 #[inline(always)]
-fn fit_radii<const N: usize>(
-    set: &VertexSet<N>,
-    k: usize,
-    i: usize,
-    tolerance: &FitTolerance,
-) -> [f64; 2] {
-    let (m, n) = (set.dir(k), set.dir(i));
+fn fit_radii(first: &FitSample, second: &FitSample, tolerance: &FitTolerance) -> [f64; 2] {
     // e + f and e − f are the products of the change of vertex with these two.
-    let (turn, sum) = (n - m, n + m);
+    let (turn, sum) = (second.dir - first.dir, second.dir + first.dir);
     let turn2 = turn.norm_squared();
-    let (from, to) = (set.coords(k), set.coords(i));
+    let (from, to) = (&first.coords, &second.coords);
     let (mut along, mut length2) = ([0.0; 2], [0.0; 2]);
     for axis in 0..3 {
         for lane in 0..2 {
@@ -425,21 +467,20 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     if along_normal || !has_samples || corners.iter().any(|v| v.pair.is_interior()) {
         return Ok((query.evaluate(set, &unit_normal)?, DirectionSource::Normal));
     }
-    let upper = query.upper;
-    let next = fit.choose(set, corners, &unit_normal, &upper, gap);
+    let upper = query.upper.depth;
+    let next = fit.choose(set, corners, &unit_normal, &query.upper, gap);
     let sample = query.evaluate(set, &next.dir)?;
     match next.source {
         DirectionSource::Normal => {}
         DirectionSource::Prediction => {
-            fit.is_confirmed =
-                sample.h < next.value + PREDICTION_REL_TOL * (upper.depth - next.value);
+            fit.is_confirmed = sample.h < next.value + PREDICTION_REL_TOL * (upper - next.value);
             if !fit.is_confirmed {
                 fit.failures += 1;
                 fit.radius = [0.0; 2];
             }
         }
         // If D is this sphere, no direction near the one of the upper bound has a lower support value.
-        DirectionSource::Tilted => fit.is_confirmed = !(sample.h < upper.depth),
+        DirectionSource::Tilted => fit.is_confirmed = !(sample.h < upper),
     }
     Ok((sample, next.source))
 }

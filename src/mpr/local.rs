@@ -344,7 +344,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 if let Some(step) = self.step_on_known(&face, is_inside, tolerance) {
                     return Ok((step, face));
                 }
-                self.fit.update(self.set, self.query.upper.index);
+                self.fit.update(self.set, &self.query.upper);
                 let mut prediction = (!along_normal).then(|| self.predict(&face)).flatten();
                 if let Some(p) = prediction.take_if(|p| !self.has_gain(p, tolerance)) {
                     if self.is_upper_bound(&p, tolerance) {
@@ -481,9 +481,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether the two vertices of the upper bound coincide after obj2 is moved by it.
     fn vertices_coincide(&self, tolerance: f64) -> bool {
-        let UpperBound { depth, dir, index } = self.query.upper;
-        let w = self.set.difference(VertexSet::<N>::pair_of_entry(index));
-        (w - dir * depth).norm_squared() <= depth * tolerance
+        let UpperBound { depth, dir, point } = self.query.upper;
+        (point.v - dir * depth).norm_squared() <= depth * tolerance
     }
 
     /// Compares a prediction with the evaluated support value `h`, and counts it if it failed. Returns the next step if
@@ -642,8 +641,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns the upper bound, with the vertices of its support point for witness points.
     fn upper_bound(&self) -> Minimum {
-        let UpperBound { depth, dir, index } = self.query.upper;
-        let point = self.set.point(VertexSet::<N>::pair_of_entry(index));
+        let UpperBound { depth, dir, point } = self.query.upper;
         Minimum {
             dir,
             depth,

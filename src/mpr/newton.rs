@@ -45,7 +45,7 @@ pub struct NewtonStep {
 /// support point perpendicular to n, and R is its derivative. Divided by |n + x| it has the gradient g + (R − h) x.
 pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<NewtonStep> {
     let n = upper.dir;
-    let at = set.difference(VertexSet::<N>::pair_of_entry(upper.index));
+    let at = upper.point.v;
     let first = closest_entry(set, upper, |_| true)?;
     let e1 = perpendicular(&n);
     let e2 = n.cross(&e1);
@@ -98,19 +98,18 @@ fn closest_entry<const N: usize>(
     for k in 0..set.len() {
         let cosine = set.dir(k).dot(&upper.dir);
         let is_near = cosine > best.1 && cosine < 1.0 - 0.5 * MIN_ANGLE2;
-        if is_near && k != upper.index && is_smooth_between(set, upper.index, k) && is_accepted(k) {
+        if is_near && is_smooth_between(upper, set, k) && is_accepted(k) {
             best = (Some(k), cosine);
         }
     }
     best.0
 }
 
-/// Returns whether D counts as smooth between two entries: e + f is positive, and e and f differ by at most
-/// [`SMOOTH_REL_TOL`] of it.
-fn is_smooth_between<const N: usize>(set: &VertexSet<N>, i: usize, k: usize) -> bool {
-    let d = set.difference(VertexSet::<N>::pair_of_entry(k))
-        - set.difference(VertexSet::<N>::pair_of_entry(i));
-    let (e, f) = (set.dir(k).dot(&d), -set.dir(i).dot(&d));
+/// Returns whether D counts as smooth between the upper bound and entry `k`: e + f is positive, and e and f differ by
+/// at most [`SMOOTH_REL_TOL`] of it.
+fn is_smooth_between<const N: usize>(upper: &UpperBound, set: &VertexSet<N>, k: usize) -> bool {
+    let d = set.difference(VertexSet::<N>::pair_of_entry(k)) - upper.point.v;
+    let (e, f) = (set.dir(k).dot(&d), -upper.dir.dot(&d));
     e + f > 0.0 && (e - f).abs() <= SMOOTH_REL_TOL * (e + f)
 }
 
