@@ -87,6 +87,13 @@ impl<const C: usize> EpaCorners<C> {
         len: 0,
     };
 
+    /// Copies the corners of smaller buffers.
+    pub fn copy_from<const M: usize>(&mut self, other: &EpaCorners<M>) {
+        const { assert!(M <= C) };
+        self.pairs[..M].copy_from_slice(&other.pairs);
+        self.len = other.len;
+    }
+
     /// Begins with the corners of a tetrahedron.
     pub fn start(&mut self, corners: &[Vertex; 4]) {
         self.len = 0;
@@ -120,6 +127,18 @@ impl<const C: usize> EpaCorners<C> {
             set.difference(pair)
         };
         Vertex { w, pair }
+    }
+
+    /// Returns the corners of a face.
+    #[inline(always)]
+    pub fn face<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        interior: &Vec3,
+        ids: [usize; 3],
+    ) -> [Vertex; 3] {
+        let [a, b, c] = ids;
+        [a, b, c].map(|id| self.vertex(set, interior, id))
     }
 }
 
@@ -208,9 +227,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let has_room = has_larger || C - corners.len > N - set.len();
         if !(height > level && is_gain && has_room) {
             let along_normal = !is_inside || closest.key == last_failed_key;
-            let vertices = polytope
-                .corners(face)
-                .map(|id| corners.vertex(set, interior, id));
+            let vertices = corners.face(set, interior, polytope.corners(face));
             let (sample, source) =
                 evaluate_beyond(query, set, fit, &vertices, &normal, allowed, along_normal)?;
             *iterations += 1;

@@ -67,13 +67,16 @@ const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
 /// The number of vertices of the large buffers, on the stack.
 const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
 const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
-const LARGE_FACES: usize = max_faces(LARGE_CORNERS);
+/// Fewer than [`max_faces`], because insertions enclose some of the corners and a query is to use at most 44 KB of
+/// stack (test `costs`). Measured on nearly concentric ellipsoids: at most 302 faces up to 140 support points, 352 at the
+/// support limit.
+const LARGE_FACES: usize = 344;
 /// The number of vertices of the buffers of an [`Arena`].
 const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
 const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
 const ARENA_FACES: usize = max_faces(ARENA_CORNERS);
 /// The room for support points above the limit, which applies only while the origin is inside the polytope.
-const SPARE_VERTICES: usize = 8;
+const SPARE_VERTICES: usize = 4;
 /// The largest number of entries that a start of the polytope adds to the vertex set.
 const START_VERTICES: usize = 12;
 
@@ -146,19 +149,16 @@ impl EpaRequest<'_> {
     }
 }
 
+/// Result of the search without a polytope.
+enum PortalEnd {
+    /// The minimum is proven, and the result is written.
+    Certified,
+    /// The minimum is not proven; a portal, if one was found.
+    Open(Option<[Vertex; 3]>),
+}
+
 /// A tetrahedron to start the polytope from.
 type Start = [Vertex; 4];
-
-/// Result of an expansion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum PolytopeEnd {
-    /// The polytope contains the origin, and the result is written.
-    Inside(Status),
-    /// The polytope does not provably contain the origin.
-    Outside,
-    /// The buffers are full, and there are larger ones.
-    NoRoom,
-}
 
 /// The state of a query.
 struct Solver<'q, 'm, A, B> {
@@ -242,6 +242,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 
 impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     /// Runs steps 2 to 6.
+    #[inline(always)]
     fn run(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
@@ -250,6 +251,21 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         is_warm: bool,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<Status, Stop> {
+        match self.run_without_polytope(set, center, ray, is_warm)? {
+            PortalEnd::Certified => Ok(Status::Converged),
+            PortalEnd::Open(portal) => self.expand_from(set, portal.as_ref(), is_warm, arena),
+        }
+    }
+
+    /// Runs steps 2 to 4. Not inlined, so that its frame is released before a polytope is made.
+    #[inline(never)]
+    fn run_without_polytope(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+        center: Option<&SupportPoint>,
+        ray: &Vec3,
+        is_warm: bool,
+    ) -> Result<PortalEnd, Stop> {
         let mut ray = *ray;
         let opposite = match center {
             Some(center) => {
@@ -265,10 +281,10 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
         if let Some(portal) = &portal {
             if self.certify(set, portal, is_warm)? {
-                return Ok(Status::Converged);
+                return Ok(PortalEnd::Certified);
             }
         }
-        self.expand_from(set, portal.as_ref(), is_warm, arena)
+        Ok(PortalEnd::Open(portal))
     }
 
     /// Sets the interior point to the middle of the support points along the ray and opposite to it, and `ray` to the
@@ -401,17 +417,16 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 _ => self.find_gjk_tetrahedron(set)?,
             };
             let Some(start) = start else { continue };
-            let mut found = self.expand_small(set, &start, is_warm)?;
-            if found == PolytopeEnd::NoRoom {
-                // From the same tetrahedron again: the known vertices rebuild the polytope without a callback.
-                let mut buffers = None;
-                found = self.expand_large(set, &start, arena, &mut buffers)?;
-                if let Some(buffers) = buffers {
-                    found = self.expand_in_arena(&start, buffers)?;
-                }
-            }
+            let mut corners = EpaCorners::EMPTY;
+            let mut polytope = EpaPolytope::blank(self.query.scale.size());
+            let end = self.expand_small(set, &mut corners, &mut polytope, &start)?;
+            let found = match end {
+                None => None,
+                Some(ExpandEnd::NoRoom) => self.expand_large(set, &corners, &polytope, arena)?,
+                Some(end) => self.compute_result(set, &corners, &polytope, end, is_warm)?,
+            };
             // If rounding ended the expansion, one from the next start may end closer to the minimum.
-            if let PolytopeEnd::Inside(found) = found {
+            if let Some(found) = found {
                 status = found;
                 if status != Status::Rounding {
                     return Ok(status);
@@ -425,87 +440,79 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(status)
     }
 
-    /// Expands a polytope in the small buffers.
+    /// Expands a polytope from a tetrahedron in the small buffers; `None` if the tetrahedron is flat. Not inlined: the
+    /// small buffers are alive while larger ones are in use, this frame is not.
     #[inline(never)]
     fn expand_small(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
+        corners: &mut EpaCorners<SMALL_CORNERS>,
+        polytope: &mut EpaPolytope<SMALL_FACES>,
         start: &Start,
-        is_warm: bool,
-    ) -> Result<PolytopeEnd, Stop> {
-        let mut corners = EpaCorners::<SMALL_CORNERS>::EMPTY;
-        let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
-        self.expand_in(set, &mut corners, &mut polytope, start, is_warm, true)
+    ) -> Result<Option<ExpandEnd>, Stop> {
+        let ulp = f64::EPSILON * self.query.scale.size();
+        let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
+            return Ok(None);
+        };
+        let is_exact = self.limits.needs_exact_planes(&self.query.scale);
+        polytope.start(&tetrahedron, is_exact);
+        corners.start(start);
+        self.expand_in(set, corners, polytope, true).map(Some)
     }
 
-    /// Expands a polytope in the large buffers. If they become full and there is an arena, copies the vertices to its
-    /// buffers and stores these in `buffers`.
+    /// Continues an expansion in the large buffers and, if these become full, in those of the arena if there is one.
+    /// Returns as [`Solver::compute_result`].
     #[cold]
     #[inline(never)]
-    fn expand_large<'m>(
+    fn expand_large(
         &mut self,
-        small: &VertexSet<SMALL_VERTICES>,
-        start: &Start,
-        arena: &mut Option<&'m mut dyn Arena>,
-        buffers: &mut Option<&'m mut EpaBuffers>,
-    ) -> Result<PolytopeEnd, Stop> {
+        small_set: &VertexSet<SMALL_VERTICES>,
+        small_corners: &EpaCorners<SMALL_CORNERS>,
+        small_polytope: &EpaPolytope<SMALL_FACES>,
+        arena: &mut Option<&mut dyn Arena>,
+    ) -> Result<Option<Status>, Stop> {
         let mut set = VertexSet::<LARGE_VERTICES>::EMPTY;
         let mut corners = EpaCorners::<LARGE_CORNERS>::EMPTY;
         let mut polytope = EpaPolytope::<LARGE_FACES>::BLANK;
-        set.copy_from(small);
-        let has_larger = arena.is_some();
-        let found = self.expand_in(
-            &mut set,
-            &mut corners,
-            &mut polytope,
-            start,
-            false,
-            has_larger,
-        )?;
-        if let (PolytopeEnd::NoRoom, Some(arena)) = (found, arena.take()) {
-            let large = arena.buffers()?;
-            large.set.copy_from(&set);
-            *buffers = Some(large);
+        set.copy_from(small_set);
+        corners.copy_from(small_corners);
+        polytope.copy_from(small_polytope);
+        let end = self.expand_in(&mut set, &mut corners, &mut polytope, arena.is_some())?;
+        match arena.take() {
+            Some(arena) if end == ExpandEnd::NoRoom => {
+                let buffers = arena.buffers()?;
+                buffers.set.copy_from(&set);
+                buffers.corners.copy_from(&corners);
+                buffers.polytope.copy_from(&polytope);
+                self.expand_in_arena(buffers)
+            }
+            _ => self.compute_result(&mut set, &corners, &polytope, end, false),
         }
-        Ok(found)
     }
 
-    /// Expands a polytope in the buffers of an arena, which already have the vertices.
+    /// Continues an expansion in the buffers of an arena. Returns as [`Solver::compute_result`].
     #[cold]
     #[inline(never)]
-    fn expand_in_arena(
-        &mut self,
-        start: &Start,
-        buffers: &mut EpaBuffers,
-    ) -> Result<PolytopeEnd, Stop> {
+    fn expand_in_arena(&mut self, buffers: &mut EpaBuffers) -> Result<Option<Status>, Stop> {
         let EpaBuffers {
             set,
             corners,
             polytope,
         } = buffers;
-        self.expand_in(set, corners, polytope, start, false, false)
+        let end = self.expand_in(set, corners, polytope, false)?;
+        self.compute_result(set, corners, polytope, end, false)
     }
 
-    /// Expands a polytope from a tetrahedron in these buffers, and writes the result unless the expansion is to
-    /// continue in larger ones.
+    /// Expands a polytope in these buffers. `has_larger`: true if the expansion is continued when they are full.
     #[inline(always)]
     fn expand_in<const N: usize, const C: usize, const F: usize>(
         &mut self,
         set: &mut VertexSet<N>,
         corners: &mut EpaCorners<C>,
         polytope: &mut EpaPolytope<F>,
-        start: &Start,
-        is_warm: bool,
         has_larger: bool,
-    ) -> Result<PolytopeEnd, Stop> {
-        let ulp = f64::EPSILON * self.query.scale.size();
-        let Some(tetrahedron) = Tetrahedron::new(start.map(|v| v.w), ulp) else {
-            return Ok(PolytopeEnd::Outside);
-        };
-        let is_exact = self.limits.needs_exact_planes(&self.query.scale);
-        polytope.start(&tetrahedron, is_exact);
-        corners.start(start);
-        let end = expand(
+    ) -> Result<ExpandEnd, Stop> {
+        expand(
             self.query,
             set,
             &mut self.fit,
@@ -515,11 +522,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             &mut self.iterations,
             self.limits,
             has_larger,
-        )?;
-        if end == ExpandEnd::NoRoom && has_larger {
-            return Ok(PolytopeEnd::NoRoom);
-        }
-        self.compute_result(set, corners, polytope, end, is_warm)
+        )
     }
 
     /// Returns the interior point and three points of D, known or evaluated: one far from it, one far from the line of
@@ -597,7 +600,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         })))
     }
 
-    /// Writes the result of an expansion, unless the gap of an earlier result is as small.
+    /// Writes the result of an expansion, unless the gap of an earlier result is as small. Returns its status; `None` if
+    /// the polytope does not provably contain the origin.
     #[inline(never)]
     fn compute_result<const N: usize, const C: usize, const F: usize>(
         &mut self,
@@ -606,7 +610,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         polytope: &EpaPolytope<F>,
         end: ExpandEnd,
         is_warm: bool,
-    ) -> Result<PolytopeEnd, Stop> {
+    ) -> Result<Option<Status>, Stop> {
         let closest = polytope.closest_face();
         let support_eps = self.query.scale.support_eps();
         let tolerance = self.query.scale.tolerance(self.limits.gap.tolerance);
@@ -617,24 +621,18 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             0.0
         };
         let interior = self.interior.v;
-        let vertices = |f: usize| {
-            polytope
-                .corners(f)
-                .map(|id| corners.vertex(set, &interior, id))
-        };
         if is_warm && end == ExpandEnd::Converged && self.query.upper.depth - lower > tolerance {
-            let face = vertices(closest.face);
+            let face = corners.face(set, &interior, polytope.corners(closest.face));
             self.refine_direction(set, &face, &polytope.normal(closest.face))?;
         }
         let upper = self.query.upper;
         if self.gap == f64::INFINITY || upper.depth - lower < self.gap {
             let corner = |id: usize| corners.vertex(set, &interior, id).w;
             let (dir, depth) = (&upper.dir, upper.depth);
-            let face = exit_face(polytope, &corner, closest.face, dir, depth, tolerance);
-            let face = polytope
-                .corners(face)
-                .map(|id| corners.vertex(set, &interior, id));
-            self.write_result_on_face(set, face, lower, tolerance);
+            let gap = self.limits.gap.allowed(depth, tolerance);
+            let face = exit_face(polytope, &corner, closest.face, dir, depth, gap);
+            let face = corners.face(set, &interior, polytope.corners(face));
+            self.write_result_on_face(set, face, lower, gap);
         }
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
         let tolerance = larger(self.limits.gap.tolerance, tolerance);
@@ -648,11 +646,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             ExpandEnd::SupportLimit | ExpandEnd::NoRoom => Status::SupportLimit,
             ExpandEnd::IterationLimit => Status::IterationLimit,
         };
-        Ok(if is_inside {
-            PolytopeEnd::Inside(status)
-        } else {
-            PolytopeEnd::Outside
-        })
+        Ok(is_inside.then_some(status))
     }
 
     /// Writes the result of the upper bound. `face`: the face through which the ray along its direction leaves the

@@ -276,6 +276,22 @@ impl<const F: usize> EpaPolytope<F> {
         };
     }
 
+    /// Copies a polytope with less room. Its list of free faces ends with the index after its last face, so that it
+    /// continues with the added ones.
+    pub fn copy_from<const M: usize>(&mut self, other: &EpaPolytope<M>) {
+        const { assert!(M <= F) };
+        self.clear();
+        self.planes[..M].copy_from_slice(&other.planes);
+        self.keys[..M].copy_from_slice(&other.keys);
+        self.twins[..M].copy_from_slice(&other.twins);
+        self.corners[..M].copy_from_slice(&other.corners);
+        self.next[..M].copy_from_slice(&other.next);
+        (self.free, self.used) = (other.free, other.used);
+        (self.interior, self.interior_clearance) = (other.interior, other.interior_clearance);
+        (self.error, self.ulp) = (other.error, other.ulp);
+        (self.min_n2, self.key_error) = (other.min_n2, other.key_error);
+    }
+
     /// Returns whether the interior point is below all planes by at least the error, so that the surface winds around
     /// it; `false` for NaN.
     #[inline(always)]
