@@ -35,7 +35,7 @@ use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::{GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::KNOWN_LEVEL;
+use crate::mpr::portal::{KNOWN_LEVEL, is_shallow};
 
 /// The fraction of the gap between the closest face and the upper bound that a known difference must close to
 /// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
@@ -226,10 +226,10 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
         let has_room = has_larger || C - corners.len > N - set.len();
         if !(height > level && is_gain && has_room) {
-            let along_normal = !is_inside || closest.key == last_failed_key;
-            let vertices = corners.face(set, interior, polytope.corners(face));
+            let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
+            let vertices = |set: &VertexSet<N>| corners.face(set, interior, polytope.corners(face));
             let (sample, source) =
-                evaluate_beyond(query, set, fit, &vertices, &normal, allowed, along_normal)?;
+                evaluate_beyond(query, set, fit, vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > queried_level {

@@ -329,12 +329,12 @@ impl<const F: usize> EpaPolytope<F> {
         let last = Self::in_range(self.used.wrapping_sub(1)) | 7;
         for row in self.keys[..=last].chunks_exact(8) {
             for (a, b) in least.iter_mut().zip(row) {
-                *a = if *b < *a { *b } else { *a };
+                *a = lesser(*a, *b);
             }
         }
         let mut key = f64::INFINITY;
         for b in least {
-            key = if b < key { b } else { key };
+            key = lesser(key, b);
         }
         ClosestFace {
             face: (key.to_bits() & INDEX_MASK) as usize,

@@ -446,9 +446,10 @@ fn fit_radii(first: &FitSample, second: &FitSample, tolerance: &FitTolerance) ->
     })
 }
 
-/// Evaluates the support function for a face with these corners and this normal, which need not be unit: along the
-/// direction that the fit predicts, else along the tilted direction, else along the normal. `along_normal`: true if
-/// it must be the normal. `gap`: the allowed difference of the bounds, metres.
+/// Evaluates the support function for a face with this normal, which need not be unit: along the direction that the fit
+/// predicts, else along the tilted direction, else along the normal. `along_normal`: true if it must be the normal;
+/// `corners`, which returns the corners of the face, is then not called. `gap`: the allowed difference of the bounds,
+/// metres.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -457,18 +458,23 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
-    corners: &[Vertex; 3],
+    corners: impl FnOnce(&VertexSet<N>) -> [Vertex; 3],
     normal: &Vec3,
     gap: f64,
     along_normal: bool,
 ) -> Result<(SupportSample, DirectionSource), Stop> {
-    let unit_normal = normalise_unscaled(normal).unwrap_or(query.upper.dir);
-    let has_samples = set.len() >= MIN_SAMPLES || fit.is_confirmed;
-    if along_normal || !has_samples || corners.iter().any(|v| v.pair.is_interior()) {
-        return Ok((query.evaluate(set, &unit_normal)?, DirectionSource::Normal));
-    }
     let upper = query.upper.depth;
-    let next = fit.choose(set, corners, &unit_normal, &query.upper, gap);
+    let mut next = QueryDirection {
+        dir: normalise_unscaled(normal).unwrap_or(query.upper.dir),
+        source: DirectionSource::Normal,
+        value: upper,
+    };
+    if !along_normal && (set.len() >= MIN_SAMPLES || fit.is_confirmed) {
+        let corners = corners(set);
+        if !corners.iter().any(|v| v.pair.is_interior()) {
+            next = fit.choose(set, &corners, &next.dir, &query.upper, gap);
+        }
+    }
     let sample = query.evaluate(set, &next.dir)?;
     match next.source {
         DirectionSource::Normal => {}

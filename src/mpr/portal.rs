@@ -56,7 +56,7 @@ const SHALLOW_REL: f64 = 0.3;
 
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
-fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
+pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
     let upper = query.upper.depth;
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
@@ -267,7 +267,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             }
             let is_along_normal = along_normal || offset < 0.0;
             let (sample, source) =
-                evaluate_beyond(query, set, fit, portal, &normal, gap, is_along_normal)?;
+                evaluate_beyond(query, set, fit, |_| *portal, &normal, gap, is_along_normal)?;
             w = sample.vertex();
             let is_above = normal.dot(&w.w) - offset > query.scale.height_eps() * length;
             if !is_above {
