@@ -33,9 +33,9 @@ use crate::math::{Vec3, lesser};
 use crate::minkowski::query::{Stop, SupportQuery};
 use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
-use crate::minkowski::tolerance::{GapLimit, Scale};
+use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::{KNOWN_LEVEL, is_shallow};
+use crate::mpr::portal::is_shallow;
 
 /// The fraction of the gap between the closest face and the upper bound that a known difference must close to
 /// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
@@ -59,9 +59,8 @@ impl EpaLimits {
     /// Returns the limits of a query whose depth may be off by the larger of the tolerance and `rel_tol` times the
     /// depth.
     pub fn new(settings: &Settings, rel_tol: f64, max_points: u64) -> Self {
-        let tolerance = settings.tolerance;
         Self {
-            gap: GapLimit { tolerance, rel_tol },
+            gap: GapLimit::new(settings.tolerance, rel_tol),
             max_points,
             max_iterations: settings.max_iterations,
         }
@@ -184,10 +183,13 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     loop {
         let closest = polytope.closest_face();
         polytope.set_size(query.scale.size());
-        let tolerance = query.scale.tolerance(limits.gap.tolerance);
         let upper = query.upper.depth;
-        let allowed = limits.gap.allowed(upper, tolerance);
-        let error = polytope.error() + polytope.key_error(upper) + query.scale.support_eps();
+        let Bounds {
+            allowed,
+            rounding,
+            insert_height,
+        } = limits.gap.bounds(&query.scale, upper);
+        let error = polytope.error() + polytope.key_error(upper) + rounding;
         let target = upper - allowed + lesser(error, 0.5 * allowed);
         let target_key = target * target.abs();
         let is_inside = closest.key >= 0.0;
@@ -210,14 +212,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         }
         let face = closest.face;
         let (normal, offset) = (polytope.normal(face), polytope.offset(face));
-        // The least height above the face for an insertion: rounding for evaluated points, more for known ones.
-        let queried_level = query.scale.height_eps();
-        let level = queried_level
-            + if is_inside {
-                KNOWN_LEVEL * allowed
-            } else {
-                0.0
-            };
+        let level = if is_inside { insert_height } else { rounding };
         let mut w = set.farthest_vertex(&normal);
         let height = normal.dot(&w.w) - offset;
         let distance = closest.key.sqrt();
@@ -232,7 +227,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
                 evaluate_beyond(query, set, fit, vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
-            if queried_height > queried_level {
+            if queried_height > rounding {
                 w = sample.vertex();
             } else if source != DirectionSource::Normal {
                 last_failed_key = closest.key;
@@ -246,7 +241,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         }
         let id = corners.push(w.pair);
         let corner = |id| corners.vertex(set, interior, id).w;
-        if !polytope.insert(face, id, &w.w, queried_level, &corner) {
+        if !polytope.insert(face, id, &w.w, rounding, &corner) {
             corners.len -= 1;
             return Ok(ExpandEnd::NoRoom);
         }

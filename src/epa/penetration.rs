@@ -319,8 +319,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         ray: &Vec3,
     ) -> Result<Option<[Vertex; 3]>, Stop> {
         let query = &mut *self.query;
-        let tolerance = query.scale.tolerance(self.limits.gap.tolerance);
-        let gap = self.limits.gap.allowed(query.upper.depth, tolerance);
+        let gap = self.limits.gap.allowed(&query.scale, query.upper.depth);
         let length = query.upper.depth - self.interior.v.dot(ray);
         let Some(mut portal) = discover(query, set, ray, length, gap, (2.0 * gap / length).sqrt())?
         else {
@@ -362,7 +361,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         };
         let lower = tetrahedron.inner_radius() - tetrahedron.error - scale.support_eps();
         let tolerance = scale.tolerance(self.limits.gap.tolerance);
-        let allowed = self.limits.gap.allowed(self.query.upper.depth, tolerance);
+        let allowed = self.limits.gap.allowed(scale, self.query.upper.depth);
         if !(lower > 0.0 && lower >= self.query.upper.depth - allowed) {
             return Ok(false);
         }
@@ -629,17 +628,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         if self.gap == f64::INFINITY || upper.depth - lower < self.gap {
             let corner = |id: usize| corners.vertex(set, &interior, id).w;
             let (dir, depth) = (&upper.dir, upper.depth);
-            let gap = self.limits.gap.allowed(depth, tolerance);
+            let gap = self.limits.gap.allowed(&self.query.scale, depth);
             let face = exit_face(polytope, &corner, closest.face, dir, depth, gap);
             let face = corners.face(set, &interior, polytope.corners(face));
             self.write_result_on_face(set, face, lower, gap);
         }
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
-        let tolerance = larger(self.limits.gap.tolerance, tolerance);
-        let allowed = self
-            .limits
-            .gap
-            .allowed(upper.depth, tolerance + ROUNDING_GAP_EPS * support_eps);
+        let gap = &self.limits.gap;
+        let allowed = larger(
+            gap.allowed(&self.query.scale, upper.depth),
+            larger(gap.tolerance, tolerance) + ROUNDING_GAP_EPS * support_eps,
+        );
         let status = match end {
             _ if upper.depth - lower <= allowed => Status::Converged,
             ExpandEnd::Converged | ExpandEnd::Rounding => Status::Rounding,

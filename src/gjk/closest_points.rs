@@ -26,8 +26,9 @@ use crate::math::{Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::round_fit::{MIN_GAIN, PREDICTION_REL_TOL, SphereFit};
 use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::tolerance::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS};
+use crate::mpr::portal::MAX_STEPS;
 
 /// Largest tangent of the angle between a queried direction and the normal of the best plane. Measured on nine
 /// sets of pairs: 12 % more support points without the limit; insensitive from 0.5 to 0.8.

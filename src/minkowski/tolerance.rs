@@ -11,11 +11,13 @@
 //! points of D rounds to ulps of it. The world extent is at least half the size, and larger than the size
 //! for objects far from the world's origin.
 
-use crate::math::{EPSILON, larger};
+use crate::math::{EPSILON, larger, lesser};
 use crate::minkowski::support::SupportPoint;
 
 /// The relative tolerance of a default query: the largest gap between the bounds, as a fraction of the depth.
 pub const GAP_REL: f64 = 1e-3;
+/// The height, in allowed gaps, at which a known difference replaces a support call.
+pub const KNOWN_LEVEL: f64 = 0.2;
 /// The largest effective tolerance, as a fraction of the size of D.
 const MAX_TOLERANCE_REL: f64 = 2.5e-4;
 
@@ -105,9 +107,8 @@ impl Scale {
     /// of the size, and raised to the contact epsilon. NaN counts as infinite.
     #[inline(always)]
     pub fn tolerance(&self, requested: f64) -> f64 {
-        requested
-            .min(MAX_TOLERANCE_REL * self.size())
-            .max(self.contact_eps())
+        let lowered = lesser(requested, MAX_TOLERANCE_REL * self.size());
+        larger(lowered, self.contact_eps())
     }
 }
 
@@ -116,16 +117,44 @@ impl Scale {
 pub struct GapLimit {
     /// The absolute tolerance that the caller requested, metres.
     pub tolerance: f64,
-    /// The relative tolerance, a fraction of the depth; 0 for a query that proves the absolute one.
-    pub rel_tol: f64,
+    /// The relative tolerance as a fraction of the upper bound; 0 for a query that proves the absolute one.
+    rel: f64,
+}
+
+/// The tolerances of one iteration of a search, metres.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// The gap that is allowed between the upper and the lower bound.
+    pub allowed: f64,
+    /// The height up to which a point counts as on a plane: [`Scale::height_eps`].
+    pub rounding: f64,
+    /// The height above which a known difference is taken in place of a support call: [`KNOWN_LEVEL`].
+    pub insert_height: f64,
 }
 
 impl GapLimit {
-    /// Returns the gap that is allowed below an upper bound, metres: the larger of the effective tolerance,
-    /// `tolerance`, and the relative one times the lower bound.
+    /// Makes the limit. `tolerance`: metres. `rel_tol`: a fraction of the lower bound.
+    pub const fn new(tolerance: f64, rel_tol: f64) -> Self {
+        let rel = rel_tol / (1.0 + rel_tol);
+        Self { tolerance, rel }
+    }
+
+    /// Returns the gap that is allowed below an upper bound, metres: the larger of the effective tolerance and the
+    /// relative one times the lower bound.
     #[inline(always)]
-    pub fn allowed(&self, upper: f64, tolerance: f64) -> f64 {
-        larger(self.rel_tol / (1.0 + self.rel_tol) * upper, tolerance)
+    pub fn allowed(&self, scale: &Scale, upper: f64) -> f64 {
+        larger(self.rel * upper, scale.tolerance(self.tolerance))
+    }
+
+    /// Returns the tolerances of an iteration with this upper bound, metres.
+    #[inline(always)]
+    pub fn bounds(&self, scale: &Scale, upper: f64) -> Bounds {
+        let (allowed, rounding) = (self.allowed(scale, upper), scale.height_eps());
+        Bounds {
+            allowed,
+            rounding,
+            insert_height: rounding + KNOWN_LEVEL * allowed,
+        }
     }
 }
 
@@ -163,12 +192,16 @@ mod tests {
 
     #[test]
     fn the_gap_is_relative_to_the_lower_bound() {
-        let gap = GapLimit {
-            tolerance: 1e-6,
-            rel_tol: GAP_REL,
-        };
-        let allowed = gap.allowed(1.001, 1e-6);
+        let gap = GapLimit::new(1e-6, GAP_REL);
+        let mut scale = Scale::default();
+        scale.note(&point(Vec3::x(), Vec3::zeros()));
+        let Bounds {
+            allowed,
+            rounding,
+            insert_height,
+        } = gap.bounds(&scale, 1.001);
         assert!((allowed - GAP_REL * (1.001 - allowed)).abs() < 1e-15);
-        assert_eq!(gap.allowed(1e-5, 1e-6), 1e-6);
+        assert!(rounding == scale.height_eps() && insert_height > KNOWN_LEVEL * allowed);
+        assert_eq!(gap.allowed(&scale, 1e-5), 1e-6);
     }
 }

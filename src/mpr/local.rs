@@ -47,9 +47,10 @@ use crate::minkowski::round_fit::{
     MAX_FAILED_PREDICTIONS, MIN_CORE_DISTANCE_REL, MIN_GAIN, PREDICTION_REL_TOL, SphereFit,
 };
 use crate::minkowski::support::{SupportMap, SupportPoint};
+use crate::minkowski::tolerance::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::mpr::newton::newton_step;
-use crate::mpr::portal::{KNOWN_LEVEL, MAX_STEPS, discover, replace_corner};
+use crate::mpr::portal::{MAX_STEPS, discover, replace_corner};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
 /// minimum.

@@ -27,7 +27,7 @@ use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
 use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
-use crate::minkowski::tolerance::GapLimit;
+use crate::minkowski::tolerance::{GapLimit, KNOWN_LEVEL};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 
 /// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
@@ -46,8 +46,6 @@ const MAX_TILTS: u32 = 3;
 /// The iteration limit of portal discovery and refinement, of the local search and of GJK. Each step comes closer to
 /// the surface of D, and few loops take forty; later steps only change rounding errors. Insensitive: 24 to 100.
 pub const MAX_STEPS: u32 = 100;
-/// The height, in allowed gaps, at which a known difference replaces a support call.
-pub const KNOWN_LEVEL: f64 = 0.2;
 /// The upper bound, in sizes, up to which a contact is shallow. The portal of a shallow contact is refined after the
 /// origin is on its inner side, because it is near the minimum; for deeper contacts of round objects the polytope is
 /// faster (5 %). Measured: without this limit a proof of category SCALED of c-tests/tests/stability/categories.h fails
@@ -248,7 +246,6 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     portal: &mut [Vertex; 3],
     limit: &GapLimit,
 ) -> Result<(), Stop> {
-    let tolerance = query.scale.tolerance(limit.tolerance);
     let mut along_normal = false;
     for _ in 0..MAX_STEPS {
         let normal = (portal[1].w - portal[0].w).cross(&(portal[2].w - portal[0].w));
@@ -259,7 +256,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         }
         let length = n2.sqrt();
         let upper = query.upper.depth;
-        let gap = limit.allowed(upper, tolerance);
+        let gap = limit.allowed(&query.scale, upper);
         let mut w = set.farthest_vertex(&normal);
         if !(normal.dot(&w.w) - offset > KNOWN_LEVEL * gap * length) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
@@ -291,10 +288,7 @@ mod tests {
     use crate::minkowski::tolerance::GAP_REL;
     use crate::shapes::{Random, ball, capsule, corners, difference, hull, placed};
 
-    const LIMIT: GapLimit = GapLimit {
-        tolerance: 1e-6,
-        rel_tol: GAP_REL,
-    };
+    const LIMIT: GapLimit = GapLimit::new(1e-6, GAP_REL);
 
     /// Returns the portals after discovery and after refinement, from the centers; `None` for a separated pair.
     fn solve<A: SupportMap, B: SupportMap>(
@@ -314,7 +308,7 @@ mod tests {
         let ray = -c.v.normalize();
         query.evaluate(&mut set, &ray).ok()?;
         let length = query.upper.depth + c.v.norm();
-        let gap = LIMIT.allowed(query.upper.depth, query.scale.tolerance(LIMIT.tolerance));
+        let gap = LIMIT.allowed(&query.scale, query.upper.depth);
         let found = discover(
             &mut query,
             &mut set,
