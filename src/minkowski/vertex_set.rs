@@ -207,12 +207,16 @@ impl<const N: usize> VertexSet<N> {
     fn farthest_along(&self, nx: f64, ny: f64, nz: f64) -> VertexPair {
         let [x, y, z] = &self.coords;
         let mut best = [f64::NEG_INFINITY; 2];
+        let mut index = [0; 2];
+        // Not known to be equal, so that the indices of both lanes are counted by one packed instruction.
+        let step = core::hint::black_box(&[1, 1]);
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
                 let h = nx * x[i][lane] + ny * y[i][lane] + nz * z[i][lane];
-                let index = Self::INDEX_MARK | i as u64;
-                let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | index) + 0.0;
-                best[lane] = if h > best[lane] { h } else { best[lane] };
+                let tag = Self::INDEX_MARK | index[lane];
+                let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | tag) + 0.0;
+                best[lane] = larger(best[lane], h);
+                index[lane] += step[lane];
             }
         }
         let [a, b] = best.map(|h| (h.to_bits() & Self::INDEX_MASK) as u16);
