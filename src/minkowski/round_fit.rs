@@ -430,20 +430,20 @@ fn fit_radii(first: &FitSample, second: &FitSample, tolerance: &FitTolerance) ->
             length2[lane] += d * d;
         }
     }
-    [0, 1].map(|lane| {
+    let mut radii = [0.0; 2];
+    for lane in 0..2 {
         let is_parallel = along[lane] * along[lane] > tolerance.cos2 * turn2 * length2[lane];
         if !(is_parallel && along[lane] > 1e-9 * turn2 && turn2 > MIN_ANGLE2) {
-            return 0.0;
+            continue;
         }
         let off = (0..3).fold(0.0, |off, axis| {
             off + sum[axis] * (to[axis][lane] - from[axis][lane])
         });
         if off.abs() <= tolerance.relative * along[lane] {
-            along[lane] / turn2
-        } else {
-            0.0
+            radii[lane] = along[lane] / turn2;
         }
-    })
+    }
+    radii
 }
 
 /// Evaluates the support function for a face with this normal, which need not be unit: along the direction that the fit
