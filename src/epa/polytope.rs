@@ -783,6 +783,41 @@ mod tests {
         }
     }
 
+    /// A full polytope that is copied to larger buffers continues there as if it had been made in them.
+    #[test]
+    fn a_copied_polytope_continues() {
+        let mut r = Random::new(6);
+        let points = r.points(60, 1.0);
+        let (mut small, mut large, mut whole) = (
+            EpaPolytope::<32>::BLANK,
+            EpaPolytope::<128>::BLANK,
+            EpaPolytope::<128>::BLANK,
+        );
+        let first = Tetrahedron::new([0, 1, 2, 3].map(|i| points[i]), EPSILON).unwrap();
+        small.start(&first, false);
+        whole.start(&first, false);
+        let mut is_copied = false;
+        for (i, p) in points.iter().enumerate().skip(4) {
+            let corner = |i: usize| points[i];
+            let Some(f) = farthest_below(&whole, &Plane::point(p), LEVEL) else {
+                continue;
+            };
+            assert!(whole.insert(f, i, p, LEVEL, &corner));
+            if !is_copied && !small.insert(f, i, p, LEVEL, &corner) {
+                large.copy_from(&small);
+                is_copied = true;
+            }
+            if is_copied {
+                assert!(large.insert(f, i, p, LEVEL, &corner));
+                check(&large, &points);
+            }
+        }
+        assert!(is_copied);
+        let faces = |p: &EpaPolytope<128>| p.faces().map(|f| p.corners(f)).collect::<Vec<_>>();
+        assert_eq!(faces(&large), faces(&whole));
+        assert_eq!(closest(&large), closest(&whole));
+    }
+
     /// A polytope without room returns `false` and does not change.
     #[test]
     fn a_full_polytope_does_not_change() {
