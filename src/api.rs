@@ -351,6 +351,7 @@ where
         centers: center,
         first_dir: None,
         keeps_state: has_state,
+        wants_points: true,
     })
 }
 

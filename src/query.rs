@@ -54,6 +54,8 @@ pub struct Pair<A, B> {
     pub first_dir: Option<Vec3>,
     /// True if the caller keeps the state.
     pub keeps_state: bool,
+    /// True if the caller reads the witness points or the contact position.
+    pub wants_points: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
@@ -352,6 +354,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                     _ => *state,
                 },
                 limits: *limits,
+                wants_points: self.wants_points,
             };
             let mut query = SupportQuery::new(&self.difference, interior);
             let first = query.evaluate_first(&request.first_dir())?;
@@ -455,6 +458,7 @@ mod tests {
             centers: None,
             first_dir: None,
             keeps_state: true,
+            wants_points: true,
         };
         let mut hit = Penetration::default();
         pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
@@ -504,6 +508,7 @@ mod tests {
                 }),
                 first_dir: None,
                 keeps_state: true,
+                wants_points: true,
             };
             let mut state = WarmStart::guess(&r.direction());
             let mut hit = Penetration::default();
@@ -536,6 +541,7 @@ mod tests {
                 }),
                 first_dir: None,
                 keeps_state: true,
+                wants_points: true,
             };
             let mut state = WarmStart::guess(&r.direction());
             if pair.intersect(Some(&mut state)).is_ok() {

@@ -26,7 +26,7 @@
 //! |---|---|
 //! | `depth`, `dir` | always; sound |
 //! | `depth_lower` | always, of the global minimum; 0 if nothing is proven |
-//! | witness points | always, each in its object |
+//! | witness points | always, each in its object; zero if they are not wanted |
 //!
 //! [`Status::Converged`]: depth − depth_lower is within the allowed gap. [`Status::InconsistentSupport`]: `depth_lower`
 //! is 0, and `depth` is sound only for the points that the support functions returned in the second start.
@@ -135,6 +135,8 @@ pub struct EpaRequest<'a> {
     pub warm: WarmStart,
     /// The limits of the query.
     pub limits: EpaLimits,
+    /// False if the witness points are not read; they are then zero.
+    pub wants_points: bool,
 }
 
 impl EpaRequest<'_> {
@@ -171,6 +173,8 @@ struct Solver<'q, 'm, A, B> {
     iterations: u64,
     /// The gap between the bounds in `hit`, metres; infinite before the first result.
     gap: f64,
+    /// See [`EpaRequest::wants_points`].
+    wants_points: bool,
     hit: &'q mut Penetration,
 }
 
@@ -210,6 +214,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         query,
         iterations: 0,
         gap: f64::INFINITY,
+        wants_points: request.wants_points,
         hit,
     };
     let mut center = request.center;
@@ -369,7 +374,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             let normal = (b - a).cross(&(c - a));
             self.refine_direction(set, portal, &normal)?;
         }
-        self.write_result_on_face(set, *portal, lower, allowed);
+        self.write_result_on_face(set, || *portal, lower, allowed);
         Ok(true)
     }
 
@@ -626,11 +631,13 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
         let upper = self.query.upper;
         if self.gap == f64::INFINITY || upper.depth - lower < self.gap {
-            let corner = |id: usize| corners.vertex(set, &interior, id).w;
-            let (dir, depth) = (&upper.dir, upper.depth);
-            let gap = self.limits.gap.allowed(&self.query.scale, depth);
-            let face = exit_face(polytope, &corner, closest.face, dir, depth, gap);
-            let face = corners.face(set, &interior, polytope.corners(face));
+            let gap = self.limits.gap.allowed(&self.query.scale, upper.depth);
+            let face = || {
+                let corner = |id: usize| corners.vertex(set, &interior, id).w;
+                let (dir, depth) = (&upper.dir, upper.depth);
+                let face = exit_face(polytope, &corner, closest.face, dir, depth, gap);
+                corners.face(set, &interior, polytope.corners(face))
+            };
             self.write_result_on_face(set, face, lower, gap);
         }
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
@@ -648,27 +655,42 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(is_inside.then_some(status))
     }
 
-    /// Writes the result of the upper bound. `face`: the face through which the ray along its direction leaves the
-    /// polytope.
-    ///
-    /// The witness points are those of the point closest to the foot, depth · dir, on one of these triangles:
+    /// Writes the result of the upper bound. `face`: returns the face through which the ray along its direction leaves
+    /// the polytope.
+    #[inline(always)]
+    fn write_result_on_face<const N: usize>(
+        &mut self,
+        set: &VertexSet<N>,
+        face: impl FnOnce() -> [Vertex; 3],
+        lower: f64,
+        gap: f64,
+    ) {
+        self.query.is_inconsistent |= self.query.has_contradiction(set);
+        let points = if self.wants_points {
+            self.witness_points(set, &face(), gap)
+        } else {
+            [Vec3::zeros(); 2]
+        };
+        self.write_result(lower, points);
+    }
+
+    /// Returns the witness points of the upper bound. They are those of the point closest to the foot, depth · dir, on
+    /// one of these triangles:
     ///
     /// 1. the face, if that point is within the gap of the foot;
     /// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction;
     /// 3. or with one corner replaced by the interior point.
     #[inline(always)]
-    fn write_result_on_face<const N: usize>(
-        &mut self,
+    fn witness_points<const N: usize>(
+        &self,
         set: &VertexSet<N>,
-        face: [Vertex; 3],
-        lower: f64,
+        face: &[Vertex; 3],
         gap: f64,
-    ) {
-        self.query.is_inconsistent |= self.query.has_contradiction(set);
+    ) -> [Vec3; 2] {
         let upper = &self.query.upper;
         let foot = upper.dir * upper.depth;
         let closest = |[a, b, c]: &[Vec3; 3]| barycentric::triangle(&foot, a, b, c);
-        let [a, b, c] = &face;
+        let [a, b, c] = face;
         let corners = [a.w, b.w, c.w];
         let mut best = closest(&corners);
         let mut replaced = None;
@@ -685,7 +707,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             }
         }
         let mut points = [Vec3::zeros(); 2];
-        for (i, (weight, v)) in best.weights.iter().zip(&face).enumerate() {
+        for (i, (weight, v)) in best.weights.iter().zip(face).enumerate() {
             let point = match replaced {
                 Some((k, point)) if k == i => point,
                 _ if v.pair.is_interior() => self.interior,
@@ -694,7 +716,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             points[0] += point.v1 * *weight;
             points[1] += point.v2 * *weight;
         }
-        self.write_result(lower, points);
+        points
     }
 
     /// Writes a result with only the upper bound.

@@ -168,6 +168,7 @@ impl QueryArgs {
                 centers: center,
                 first_dir,
                 keeps_state: has_state,
+                wants_points: true,
             })
         }
     }

@@ -91,6 +91,7 @@ unsafe fn gjk_penetration(
             query,
             QueryKind::Gjk,
             core::ptr::null_mut(),
+            wants_pos,
             |pair, state, settings, hit| {
                 arena::with_buffers(|arena| pair.proven(state, settings, arena, wants_pos, hit))
             },

@@ -73,6 +73,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
             QueryArgs { obj1, obj2, ccd },
             QueryKind::Mpr,
             warm,
+            !pos.is_null(),
             |pair, state, settings, hit| pair.penetration(state, settings, !pos.is_null(), hit),
             |hit, _| write_outputs(hit, depth, dir, pos),
         )

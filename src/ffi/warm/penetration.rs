@@ -82,7 +82,8 @@ impl ccd_penetration_t {
 }
 
 /// Runs `solve` with the caller's state, or a cold one where `warm` is NULL, and passes an overlap
-/// and the number of support points to `write_hit`. Returns the extension's code.
+/// and the number of support points to `write_hit`, which reads the witness points and the contact position only with
+/// `wants_points`. Returns the extension's code.
 ///
 /// # Safety
 /// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
@@ -91,6 +92,7 @@ pub(in crate::ffi) unsafe fn run_query(
     query: QueryArgs,
     kind: QueryKind,
     warm: *mut ccd_warm_t,
+    wants_points: bool,
     solve: impl FnOnce(
         &Pair<Object, Object>,
         &mut WarmStart,
@@ -101,9 +103,10 @@ pub(in crate::ffi) unsafe fn run_query(
 ) -> c_int {
     // SAFETY: [inputs]; `solve` runs callbacks, [callbacks].
     unsafe {
-        let Some((pair, settings)) = query.prepare(kind, !warm.is_null()) else {
+        let Some((mut pair, settings)) = query.prepare(kind, !warm.is_null()) else {
             return CCD_BAD_INPUT;
         };
+        pair.wants_points = wants_points;
         with_state(warm, |state| {
             let mut hit = Penetration::default();
             if if_overlapping(solve(&pair, state, &settings, &mut hit))?.is_none() {
@@ -144,6 +147,7 @@ pub(in crate::ffi) unsafe fn fill(
             query,
             kind,
             warm,
+            want & (CCD_WANT_POS | CCD_WANT_POINTS) != 0,
             |pair, state, settings, hit| solve(pair, state, settings, wants_pos, hit),
             |hit, supports| *out = ccd_penetration_t::new(hit, want, supports),
         )
