@@ -49,7 +49,7 @@ use crate::contact::Penetration;
 use crate::contact::feature::{Fan, FeatureQuery, MAX_KNOWN, area2};
 use crate::contact::frame::ContactFrame;
 use crate::contact::polygon::{Vec2, offset};
-use crate::math::{Vec3, larger};
+use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
 
@@ -206,6 +206,7 @@ impl FanRay {
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
         let t = (a[i] - a[j]) / ((a[i] - a[j]) - (b[i] - b[j]));
+        let t = lesser(larger(t, 0.0), 1.0);
         let bounds = [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t);
         let at = self.at + (next.at - self.at) * t;
         (outline_at(at, bounds[i], bounds[2]), bounds[k] - bounds[i])
@@ -240,12 +241,13 @@ impl PressureSum {
     #[inline(always)]
     fn add(&mut self, v: &Vec3, w: &Vec3) {
         let length2 = offset(v, w).norm_squared();
-        if length2 < self.min_side2 {
+        let area = area2(v, w);
+        // A negative area would be a negative weight. Negated for NaN.
+        if !(length2 >= self.min_side2 && area >= 0.0) {
             return;
         }
         let length = length2.sqrt();
         let (a, b) = (v.z, w.z);
-        let area = area2(v, w);
         let k = self.flank_width * length;
         let common = area + (area + k * (a + b)) * (a + b);
         let weight_v = common + (area + 2.0 * k * a) * a;

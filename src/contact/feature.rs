@@ -435,10 +435,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         for v in fan.vertices.iter_mut().take(fan.len) {
             v.z -= common_drop;
         }
-        if !fan.compute_areas() {
-            fan.extend_to_deepest_point(self.vertex_offset);
-        }
-        Ok(true)
+        Ok(fan.compute_areas() || fan.enclose_deepest_point(self.vertex_offset))
     }
 
     /// Returns a vertex moved by the vertex offset along unit `out`.
@@ -595,11 +592,30 @@ impl Fan {
         least > 0.0
     }
 
-    /// Extends the fan to contain the deepest point, which is outside: removes the sides visible from it and adds a
-    /// vertex at `distance` behind it.
+    /// Makes a fan contain the deepest point that does not: reverses it if it is clockwise, and else extends it.
+    /// Returns false if it is neither.
+    ///
+    /// The support vertices of the four tilted directions are counterclockwise around a face, but not always around
+    /// an edge: the vertex along an axis may be high, in place of one farther along it and lower.
     #[cold]
     #[inline(never)]
-    fn extend_to_deepest_point(&mut self, distance: f64) {
+    fn enclose_deepest_point(&mut self, distance: f64) -> bool {
+        let reversed = |fan: &mut Self| {
+            if let Some(vertices) = fan.vertices.get_mut(..fan.len) {
+                vertices.reverse();
+            }
+            fan.compute_areas()
+        };
+        if reversed(self) {
+            return true;
+        }
+        reversed(self);
+        self.extend_to_deepest_point(distance)
+    }
+
+    /// Extends the fan to contain the deepest point, which is outside: removes the sides visible from it and adds a
+    /// vertex at `distance` behind it. Returns false if the result does not contain it.
+    fn extend_to_deepest_point(&mut self, distance: f64) -> bool {
         let n = self.len.clamp(1, Self::CAPACITY - 1);
         let is_visible = |i: usize| !(self.areas[(i % n).min(Self::CAPACITY - 1)] > 0.0);
         let first = (0..n).find(|i| !is_visible(*i) && is_visible(i + n - 1));
@@ -617,11 +633,14 @@ impl Fan {
         fan.push(Vec3::new(x * scale, y * scale, 0.0));
         fan.compute_areas();
         let min_area = MIN_AREA_REL * distance * distance;
+        let mut is_inside = fan.len > 2;
         for area in fan.areas.iter_mut().take(fan.len) {
             // Never 0, because areas are divisors.
+            is_inside &= *area > -min_area;
             *area = larger(*area, min_area);
         }
         *self = fan;
+        is_inside
     }
 
     /// Mirrors the fan through the deepest point.
@@ -656,7 +675,7 @@ mod tests {
                 fan.push(Vec3::new(x, y, 0.0));
             }
             assert!(!fan.compute_areas());
-            fan.extend_to_deepest_point(1e-3);
+            assert!(fan.extend_to_deepest_point(1e-3));
             assert!(
                 fan.areas[..fan.len]
                     .iter()
@@ -664,5 +683,29 @@ mod tests {
                 "{round} {fan:?}"
             );
         }
+    }
+
+    /// Tests the fan of an edge whose middle is higher than its ends, a clockwise one, and one without area.
+    #[test]
+    fn clockwise_fan_is_reversed() {
+        let ends = [
+            (0.17, 0.074),
+            (0.06, 0.014),
+            (-0.25, -0.061),
+            (-0.05, -0.011),
+        ];
+        let mut fan = Fan::EMPTY;
+        for (x, y) in ends {
+            fan.push(Vec3::new(x, y, 0.0));
+        }
+        assert!(!fan.compute_areas() && fan.enclose_deepest_point(1e-3));
+        let areas = &fan.areas[..fan.len];
+        assert!(
+            areas.len() == 4 && areas.iter().all(|a| *a > 0.0),
+            "{fan:?}"
+        );
+        let mut point = Fan::EMPTY;
+        (0..4).for_each(|_| point.push(Vec3::x()));
+        assert!(!point.compute_areas() && !point.enclose_deepest_point(1e-3));
     }
 }

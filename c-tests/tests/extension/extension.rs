@@ -53,6 +53,11 @@ fn pos_is_the_center_of_pressure() {
 }
 
 #[test]
+fn pos_is_near_both_objects() {
+    strict(program("tests/extension/position.c")).build().run(["100"]);
+}
+
+#[test]
 fn contacts_are_exact() {
     strict(program("tests/extension/contacts.c")).build().run([one_in(10)]);
 }
