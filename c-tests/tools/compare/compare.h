@@ -114,6 +114,7 @@ typedef struct {
     unsigned long max_calls; /* of the callbacks, beyond which guard_end; 0: no limit */
     const ccd_vec3_t *shift; /* NULL, or a translation of obj2 */
     double tolerance;        /* of the minimum */
+    double tilt;             /* of the directions that the callbacks receive, radians */
     const ccd_vec3_t *dir;   /* unit */
     /* results */
     unsigned long calls; /* of the callbacks */
@@ -148,6 +149,7 @@ typedef struct {
 typedef struct {
     const query_t *q;
     samples_t *samples;
+    double tilt; /* of the directions of the truth, radians */
     verdict_truth_t truth;
     ccd_vec3_t truth_dir; /* of the upper bound */
     double size;          /* of the smaller object */

@@ -118,15 +118,26 @@ static void record(const object_t *o, const support_sample_t *sample)
     r->has_pending = 0;
 }
 
+/* Tilts a direction about an axis that is none of a usual scene's, nor the library's own. */
+static ccd_vec3_t tilted(const ccd_vec3_t *dir, double tilt)
+{
+    const ccd_vec3_t axis = {{(ccd_real_t)-0.64, (ccd_real_t)0.6, (ccd_real_t)0.48}};
+    ccd_vec3_t across, out = *dir;
+    ccdVec3Cross(&across, &axis, dir);
+    ccdVec3Scale(&across, (ccd_real_t)tilt);
+    ccdVec3Add(&out, &across);
+    return out;
+}
+
 static void recording_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *point)
 {
     const object_t *o = (const object_t *)obj;
     request_t *r = o->request;
-    support_sample_t sample = { *dir, {{0}} }; /* a caller may pass one address for both */
+    support_sample_t sample = { r->tilt > 0 ? tilted(dir, r->tilt) : *dir, {{0}} };
     if (r->max_calls && r->calls >= r->max_calls)
         guard_end();
     r->calls++;
-    (o->which ? r->q->ccd->support2 : r->q->ccd->support1)(r->q->obj[o->which], dir, point);
+    (o->which ? r->q->ccd->support2 : r->q->ccd->support1)(r->q->obj[o->which], &sample.dir, point);
     if (audit_support && !guard_active())
         audit_support(r->q->obj[o->which], center_of(o), &sample.dir, point);
     if (o->which && r->shift)
