@@ -14,11 +14,13 @@
 //! |---|---|
 //! | [`support`] | support functions, D, support points |
 //! | [`vertex_set`] | the known vertices and the support function of their differences |
-//! | [`query`] | evaluation, upper bound, separating-axis test, inconsistent support functions |
+//! | [`general_position`] | the tilt of the directions that are evaluated |
+//! | [`query`] | evaluation, upper bound, separating-axis test |
 //! | [`tolerance`] | effective tolerance, contact eps, rounding |
 //! | [`round_fit`] | sphere fits, which choose the directions to evaluate |
 //! | [`validate`] | tests of a support function and a center |
 
+pub mod general_position;
 pub mod query;
 pub mod round_fit;
 pub mod support;

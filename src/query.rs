@@ -69,7 +69,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<R, Stop> {
         let mut target_separation = 0.0;
         if let Some(mut axis) = state.separating_axis() {
-            let found = axis.test(&mut SupportQuery::new(&self.difference, None))?;
+            let found = axis.test(&mut SupportQuery::new(&self.difference, None, 0.0))?;
             target_separation = axis.target_separation;
             if let Some(n) = found {
                 *state = WarmStart::separated(axis.dir, target_separation, state.radius);
@@ -106,7 +106,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         is_planar: bool,
     ) -> Result<(), Stop> {
-        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref());
+        let tolerance = settings.tolerance;
+        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let witness = SupportPoint {
             v: hit.point1 - hit.point2,
             v1: hit.point1,
@@ -149,14 +150,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
         let Some(state) = state else {
             let first = self.cold_start();
-            return intersect(&self.difference, self.centers.as_ref(), &first).map(|_| ());
+            return intersect(&self.difference, self.centers.as_ref(), &first, false).map(|_| ());
         };
         self.with_separating_axis(state, |state| {
-            let first = match state.kind == WarmKind::Separated {
-                true => self.cold_start(),
-                false => state.direction().unwrap_or_else(|| self.cold_start()),
+            let is_remembered = state.is_overlap();
+            let first = if is_remembered {
+                state.dir
+            } else {
+                self.cold_start()
             };
-            let dir = intersect(&self.difference, self.centers.as_ref(), &first)?;
+            let centers = self.centers.as_ref();
+            let dir = intersect(&self.difference, centers, &first, is_remembered)?;
             // A state with a depth, from a penetration query, is more useful: keep it.
             if !(state.is_overlap() && state.depth > 0.0) {
                 *state = self.with_centers(WarmStart::towards(dir));
@@ -175,7 +179,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let depth = |state: &mut WarmStart, hit: &mut Penetration| {
             minimum(self, state, &wanted.settings, hit)
         };
-        signed_distance(&self.difference, wanted, &self.cold_start(), state, depth)
+        let centers = self.centers.as_ref();
+        signed_distance(
+            &self.difference,
+            centers,
+            wanted,
+            &self.cold_start(),
+            state,
+            depth,
+        )
     }
 
     /// Finds a local minimum of the depth by the local search ([`crate::mpr::local`]). If that ends without one,
@@ -233,9 +245,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 *state = WarmStart::COLD;
             }
             let start = state.direction().unwrap_or_else(|| self.cold_start());
-            let mut query = SupportQuery::new(&self.difference, self.centers.as_ref());
+            let is_remembered = state.direction().is_some();
+            let tolerance = settings.tolerance;
+            let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
             let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-            let (found, status) = local::penetration(&mut query, &mut set, &start, settings)?;
+            let (found, status) =
+                local::penetration(&mut query, &mut set, &start, is_remembered, settings)?;
             *hit = found;
             *state = self.with_centers(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
             if status == Status::Converged && wants_pos {
@@ -256,10 +271,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             tolerance: limits.gap.tolerance * 0.01,
             max_iterations: limits.max_iterations.saturating_sub(hit.iterations),
         };
-        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref());
+        let tolerance = settings.tolerance;
+        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let start = hit.normal;
-        let found = local::penetration(&mut query, &mut set, &start, &settings);
+        let found = local::penetration(&mut query, &mut set, &start, true, &settings);
         let Some((found, Status::Converged)) = if_overlapping(found)? else {
             return Ok(false);
         };
@@ -356,8 +372,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 limits: *limits,
                 wants_points: self.wants_points,
             };
-            let mut query = SupportQuery::new(&self.difference, interior);
-            let first = query.evaluate_first(&request.first_dir())?;
+            let tolerance = limits.gap.tolerance;
+            let mut query = SupportQuery::new(&self.difference, interior, tolerance);
+            let (dir, is_remembered) = request.first_dir();
+            let first = query.evaluate_first(&dir, is_remembered)?;
             self.run_global_from_first(&mut query, &first, &request, arena, state, wants_pos, hit)
         })
     }

@@ -41,7 +41,7 @@ use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::{CAPACITY, contains_origin};
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
-use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
+use crate::minkowski::query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::round_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
@@ -140,13 +140,13 @@ pub struct EpaRequest<'a> {
 }
 
 impl EpaRequest<'_> {
-    /// Returns the direction to evaluate first, unit.
+    /// Returns the direction to evaluate first, unit, and whether it is that of the last query.
     #[inline(always)]
-    pub fn first_dir(&self) -> Vec3 {
+    pub fn first_dir(&self) -> (Vec3, bool) {
         if self.warm.kind == WarmKind::Overlap {
-            self.warm.dir
+            (self.warm.dir, true)
         } else {
-            self.ray
+            (self.ray, false)
         }
     }
 }
@@ -175,6 +175,8 @@ struct Solver<'q, 'm, A, B> {
     gap: f64,
     /// See [`EpaRequest::wants_points`].
     wants_points: bool,
+    /// True if a support function contradicts the plane of the result.
+    is_inconsistent: bool,
     hit: &'q mut Penetration,
 }
 
@@ -196,8 +198,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     set: &mut VertexSet<SMALL_VERTICES>,
     hit: &mut Penetration,
 ) -> Result<(Status, WarmStart), Stop> {
-    let dir = &request.first_dir();
-    set.push(dir, first);
+    set.push(&query.upper.dir, first);
     let warm = &request.warm;
     let is_warm = warm.kind == WarmKind::Overlap;
     // The ray is evaluated too if the warm direction is only a guess (its depth is 0), if its support value is more
@@ -215,31 +216,20 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         iterations: 0,
         gap: f64::INFINITY,
         wants_points: request.wants_points,
+        is_inconsistent: false,
         hit,
     };
-    let mut center = request.center;
-    let mut status = solver.run(set, center, &request.ray, is_warm, &mut arena)?;
-    // A support plane excludes the center from D, or a callback contradicts itself: start again.
-    let is_outside = center.is_some() && solver.query.interior.is_none();
-    let is_inconsistent = solver.query.is_inconsistent;
-    if is_outside || is_inconsistent {
+    let mut status = solver.run(set, request.center, &request.ray, is_warm, &mut arena)?;
+    // A support plane excludes the center from D: start again without it.
+    if request.center.is_some() && solver.query.interior.is_none() {
         solver.gap = f64::INFINITY;
-        if is_outside {
-            center = None;
-        }
-        if is_inconsistent {
-            set.truncate(0);
-            solver.query.restart_inconsistent();
-            solver.query.evaluate(set, dir)?;
-        }
-        status = solver.run(set, center, &request.ray, false, &mut arena)?;
-        // Also if only the second run has noticed a contradiction.
-        if solver.query.is_inconsistent {
-            solver.hit.depth_lower = 0.0;
-            status = Status::InconsistentSupport;
-        }
+        status = solver.run(set, None, &request.ray, false, &mut arena)?;
     }
-    let UpperBound { dir, depth, .. } = solver.query.upper;
+    if solver.is_inconsistent {
+        solver.hit.depth_lower = 0.0;
+        status = Status::InconsistentSupport;
+    }
+    let SupportPlane { dir, depth, .. } = solver.query.upper;
     let radius = solver.fit.confirmed_radius();
     let is_round = solver.iterations > MAX_POLYHEDRON_ITERATIONS;
     Ok((status, WarmStart::hit(dir, depth, radius, is_round)))
@@ -665,7 +655,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         lower: f64,
         gap: f64,
     ) {
-        self.query.is_inconsistent |= self.query.has_contradiction(set);
+        self.is_inconsistent = self.query.is_inconsistent(set);
         let points = if self.wants_points {
             self.witness_points(set, &face(), gap)
         } else {

@@ -85,6 +85,7 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
     fit: &mut SphereFit,
     start: &Vec3,
+    is_remembered: bool,
     goal: &Goal,
 ) -> Result<ClosestPoints, Fault> {
     let mut search = ClosestPointsSearch {
@@ -97,7 +98,7 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         was_prediction: false,
     };
     let before = search.query.support_points();
-    let end = search.run(goal, start)?;
+    let end = search.run(goal, start, is_remembered)?;
     let (point1, point2) = search.points(end);
     let iterations = search.query.support_points() - before;
     let bound = search.query.upper;
@@ -140,8 +141,11 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     }
 
     /// Runs the search.
-    fn run(&mut self, goal: &Goal, start: &Vec3) -> Result<GjkEnd, Fault> {
-        let first = self.query.evaluate_signed(&mut self.set, start)?.vertex();
+    fn run(&mut self, goal: &Goal, start: &Vec3, is_remembered: bool) -> Result<GjkEnd, Fault> {
+        let first = self
+            .query
+            .evaluate_signed_first(&mut self.set, start, is_remembered)?
+            .vertex();
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
@@ -303,11 +307,23 @@ mod tests {
                 let mut fit = SphereFit::default();
                 if round % 2 == 0 {
                     let md = difference(hull(&cube), hull(&other));
-                    closest_points(&mut SupportQuery::new(&md, None), &mut fit, &start, &goal)
+                    closest_points(
+                        &mut SupportQuery::new(&md, None, 0.0),
+                        &mut fit,
+                        &start,
+                        false,
+                        &goal,
+                    )
                 } else {
                     let up = turn * Vec3::z();
                     let md = difference(ball(up * 0.5, 0.5), ball(-up * (0.5 + gap), 0.5));
-                    closest_points(&mut SupportQuery::new(&md, None), &mut fit, &start, &goal)
+                    closest_points(
+                        &mut SupportQuery::new(&md, None, 0.0),
+                        &mut fit,
+                        &start,
+                        false,
+                        &goal,
+                    )
                 }
             };
             let found = find(f64::INFINITY).unwrap();
@@ -337,8 +353,8 @@ mod tests {
             };
             let mut fit = SphereFit::default();
             let start = r.direction();
-            let mut query = SupportQuery::new(&md, None);
-            let found = closest_points(&mut query, &mut fit, &start, &goal).unwrap();
+            let mut query = SupportQuery::new(&md, None, 0.0);
+            let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
             assert_eq!(found.end, GjkEnd::Inside);
             assert!(found.upper < 1e-6 && found.lower < 0.0);
         }
@@ -368,9 +384,9 @@ mod tests {
                 max_distance: f64::INFINITY,
                 max_samples: 60,
             };
-            let mut query = SupportQuery::new(&md, None);
+            let mut query = SupportQuery::new(&md, None, 0.0);
             let (mut fit, start) = (SphereFit::default(), r.direction());
-            let found = closest_points(&mut query, &mut fit, &start, &goal).unwrap();
+            let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
             let gap = found.upper - found.lower;
             // The weights of the corners are rounded too.
             let is_closed = gap <= 16.0 * query.scale.contact_eps();

@@ -76,9 +76,10 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     interior: Option<&SupportPoint>,
     first: &Vec3,
+    is_remembered: bool,
 ) -> Result<Vec3, Stop> {
-    let mut query = SupportQuery::new(md, interior);
-    let point = query.evaluate_first(first)?;
+    let mut query = SupportQuery::new(md, interior, f64::INFINITY);
+    let point = query.evaluate_first(first, is_remembered)?;
     intersect_after_first(&mut query, interior, &point)?;
     Ok(query.upper.dir)
 }
@@ -101,11 +102,8 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     };
     let is_proven = find_enclosing_portal(query, &mut set, &inner)?.is_some();
     let has_interior = query.interior.is_some() == interior.is_some();
-    if is_proven && has_interior && !query.is_inconsistent {
+    if is_proven && has_interior {
         return Ok(());
-    }
-    if query.is_inconsistent {
-        set.truncate(0);
     }
     let dir = query.upper.dir;
     contains_origin(query, &mut set, interior, &dir, false).map(|_| ())
@@ -128,18 +126,12 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     is_planar: bool,
 ) -> Result<Enclosing, Stop> {
     let interior = interior.filter(|_| query.interior.is_some());
-    let was_inconsistent = query.is_inconsistent;
     let found = run_gjk(query, set, interior, dir, is_planar);
-    // Repeat if a support function has contradicted itself, or if the interior point is outside.
-    let is_tainted = query.is_inconsistent && !was_inconsistent;
-    let is_outside = interior.is_some() && query.interior.is_none();
-    if found.is_err() || !is_tainted && !is_outside {
-        return found;
+    // Repeat without the interior point if that is outside.
+    if found.is_ok() && interior.is_some() && query.interior.is_none() {
+        return run_gjk(query, set, None, dir, is_planar);
     }
-    if is_tainted {
-        set.truncate(0);
-    }
-    run_gjk(query, set, None, dir, is_planar)
+    found
 }
 
 /// Returns a point in the interior of D: on the segment from `from` to the support point along unit `dir`, as
@@ -312,7 +304,7 @@ mod tests {
         md: &MinkowskiDifference<A, B>,
         first: &Vec3,
     ) -> Result<Vec3, Stop> {
-        intersect(md, None, first)
+        intersect(md, None, first, false)
     }
 
     /// Tests that the corners of the portal and the interior point enclose the origin.
@@ -324,9 +316,9 @@ mod tests {
             let half = Vec3::new(0.5, 0.4, 0.3);
             let turned = placed(&corners(half), &r.rotation(), r.vector(0.2));
             let md = difference(hull(&corners(half)), hull(&turned));
-            let mut query = SupportQuery::new(&md, None);
+            let mut query = SupportQuery::new(&md, None, 0.0);
             let n = r.direction();
-            let point = query.evaluate_first(&n).unwrap();
+            let point = query.evaluate_first(&n, false).unwrap();
             let mut set = VertexSet::<16>::EMPTY;
             set.push(&n, &point);
             let corners = [set.farthest_vertex(&n); 4];
@@ -404,7 +396,7 @@ mod tests {
             v2: at,
         };
         let first = at.normalize();
-        let found = intersect(&md, Some(&c), &first);
+        let found = intersect(&md, Some(&c), &first, false);
         assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
     }
 
@@ -459,7 +451,7 @@ mod tests {
             let gap = r.within(-0.1, 0.1);
             let [a, b] = cubes(gap, &mut r);
             let md = difference(hull(&a), hull(&b));
-            let mut query = SupportQuery::new(&md, None);
+            let mut query = SupportQuery::new(&md, None, 0.0);
             let mut set = VertexSet::<16>::EMPTY;
             for _ in 0..round % 17 {
                 let n = r.direction();
@@ -505,19 +497,19 @@ mod tests {
                     let at = up * (2.0 * size.z + gap) + by;
                     let other: Vec<_> = cube.iter().map(|p| p + at).collect();
                     let md = difference(hull(&cube), hull(&other));
-                    let found = intersect(&md, Some(&center(at)), &at.normalize());
+                    let found = intersect(&md, Some(&center(at)), &at.normalize(), false);
                     assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
                     assert!(md.supports() < 100, "{}", md.supports());
                 }
                 let at = up * (1.5 + gap);
                 let md = difference(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
-                let found = intersect(&md, Some(&center(at)), &up);
+                let found = intersect(&md, Some(&center(at)), &up, false);
                 assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
             }
         }
         // Concentric balls.
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
-        let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x());
+        let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x(), false);
         assert!(found.is_ok());
     }
 
@@ -535,7 +527,7 @@ mod tests {
                 v2: Vec3::zeros(),
             };
             let md = difference(hull(&a), hull(&b));
-            let mut query = SupportQuery::new(&md, Some(&center));
+            let mut query = SupportQuery::new(&md, Some(&center), 0.0);
             query.interior = None;
             let mut set = VertexSet::<16>::EMPTY;
             let found = contains_origin(&mut query, &mut set, Some(&center), &r.direction(), false);

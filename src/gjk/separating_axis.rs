@@ -98,7 +98,7 @@ mod tests {
                 dir: (up + r.direction() * 0.3).normalize(),
                 target_separation: gap,
             };
-            let mut query = SupportQuery::new(&md, None);
+            let mut query = SupportQuery::new(&md, None, 0.0);
             for _ in 0..5 {
                 let n = axis.test(&mut query).unwrap().unwrap();
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
@@ -118,7 +118,7 @@ mod tests {
                 dir,
                 target_separation,
             };
-            let found = axis.test(&mut SupportQuery::new(&md, None)).unwrap();
+            let found = axis.test(&mut SupportQuery::new(&md, None, 0.0)).unwrap();
             assert!(found.is_none() && (axis.dir.norm() - 1.0).abs() < 1e-12);
         }
     }

@@ -21,7 +21,7 @@ use crate::gjk::closest_points::{ClosestPoints, GjkEnd, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
 use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::round_fit::SphereFit;
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::query::warm_start::WarmStart;
 
 /// The input of a query besides the objects.
@@ -73,6 +73,7 @@ pub struct Distance {
 /// [`Fault`].
 pub fn signed_distance<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
+    centers: Option<&SupportPoint>,
     wanted: &Wanted,
     cold_dir: &Vec3,
     state: &mut WarmStart,
@@ -89,12 +90,14 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
             return Ok(distance);
         }
     }
-    let start = state.separating_axis().map_or(*cold_dir, |axis| axis.dir);
-    let (mut cores, radius, mut contact_eps) = find_cores(md, wanted, &start, state.radius)?;
+    let axis = state.separating_axis();
+    let start = axis.map_or(*cold_dir, |axis| axis.dir);
+    let (mut cores, radius, mut contact_eps) =
+        find_cores(md, centers, wanted, &start, axis.is_some(), state.radius)?;
     // Without a separating plane the overlap test decides, however close the bounds are.
     let is_undecided = cores.end != GjkEnd::Limit && !(cores.lower >= -contact_eps);
     if cores.end == GjkEnd::Inside || is_undecided {
-        *state = WarmStart::guess(&cores.normal);
+        *state = WarmStart::towards(cores.normal);
         if let Some(distance) = depth(state)? {
             return Ok(distance);
         }
@@ -117,11 +120,13 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
 #[inline(never)]
 fn find_cores<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
+    centers: Option<&SupportPoint>,
     wanted: &Wanted,
     start: &Vec3,
+    is_remembered: bool,
     radius: [f64; 2],
 ) -> Result<(ClosestPoints, [f64; 2], f64), Fault> {
-    let mut query = SupportQuery::new(md, None);
+    let mut query = SupportQuery::new(md, centers, wanted.settings.tolerance);
     let mut fit = SphereFit::from_radius(radius);
     let goal = Goal {
         tolerance: wanted.settings.tolerance,
@@ -129,7 +134,7 @@ fn find_cores<A: SupportMap, B: SupportMap>(
         max_distance: wanted.max_distance,
         max_samples: wanted.settings.max_iterations,
     };
-    let cores = closest_points(&mut query, &mut fit, start, &goal)?;
+    let cores = closest_points(&mut query, &mut fit, start, is_remembered, &goal)?;
     Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
 }
 

@@ -458,7 +458,7 @@ mod tests {
             crate::shapes::ball(Vec3::x() * 3.0, 1.0),
         );
         for _ in 0..100 {
-            let mut query = SupportQuery::new(&md, None);
+            let mut query = SupportQuery::new(&md, None, 0.0);
             let mut set = VertexSet::<16>::EMPTY;
             while !set.is_full() {
                 query.evaluate_signed(&mut set, &r.direction()).unwrap();

@@ -24,7 +24,7 @@
 
 use crate::gjk::barycentric;
 use crate::math::{Vec3, lesser, normalise_unscaled};
-use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
+use crate::minkowski::query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
@@ -120,7 +120,7 @@ impl FitSample {
     }
 
     #[inline(always)]
-    fn of_upper(upper: &UpperBound) -> Self {
+    fn of_upper(upper: &SupportPlane) -> Self {
         let (v1, v2) = (upper.point.v1, upper.point.v2);
         Self {
             dir: upper.dir,
@@ -160,7 +160,7 @@ impl SphereFit {
 
     /// Compares the new entries of the set with the sample of the upper bound. An exact fit compares each with the
     /// previous entry too. If an object has several spheres, the one of the upper bound is taken.
-    pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, upper: &UpperBound) {
+    pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, upper: &SupportPlane) {
         let tolerance = if self.is_exact { &EXACT } else { &LOOSE };
         let lowest = FitSample::of_upper(upper);
         while self.compared < set.len() {
@@ -308,7 +308,7 @@ impl SphereFit {
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
         normal: &Vec3,
-        upper: &UpperBound,
+        upper: &SupportPlane,
         gap: f64,
     ) -> QueryDirection {
         self.update(set, upper);
@@ -378,7 +378,7 @@ impl SphereFit {
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
-        upper: &UpperBound,
+        upper: &SupportPlane,
         tolerance: f64,
     ) -> bool {
         let weights = self.weights(set, corners);

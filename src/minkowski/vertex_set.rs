@@ -225,26 +225,6 @@ impl<const N: usize> VertexSet<N> {
         }
         VertexPair { a, b }
     }
-
-    /// Returns the height, metres, of the farthest known difference above the support plane of entry `i`: more than
-    /// rounding if a support function has contradicted itself.
-    #[inline(always)]
-    pub fn excess(&self, i: usize) -> f64 {
-        let [x, y, z] = &self.coords;
-        let i = Self::in_range(i);
-        let n = self.dirs[i];
-        let height =
-            |i: usize| [0, 1].map(|lane| n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane]);
-        let own = height(i);
-        let mut best = own;
-        for j in 0..self.len.min(N) {
-            let h = height(j);
-            for lane in 0..2 {
-                best[lane] = larger(h[lane], best[lane]);
-            }
-        }
-        best[0] - own[0] + (best[1] - own[1])
-    }
 }
 
 #[cfg(test)]

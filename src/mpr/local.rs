@@ -42,7 +42,7 @@ use crate::epa::plane::Tetrahedron;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
-use crate::minkowski::query::{Stop, SupportQuery, SupportSample, UpperBound};
+use crate::minkowski::query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::round_fit::{
     MAX_FAILED_PREDICTIONS, MIN_CORE_DISTANCE_REL, MIN_GAIN, PREDICTION_REL_TOL, SphereFit,
 };
@@ -208,6 +208,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     start: &Vec3,
+    is_remembered: bool,
     settings: &Settings,
 ) -> Result<(Penetration, Status), Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
@@ -222,7 +223,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         sphere_failures: 0,
         newton_failures: 0,
     };
-    let (minimum, mut status) = match walk.run(start) {
+    let (minimum, mut status) = match walk.run(start, is_remembered) {
         Ok(minimum) => (minimum, Status::Converged),
         Err(WalkEnd::Stop(stop)) => return Err(stop),
         Err(WalkEnd::Status(status)) => (walk.upper_bound(), status),
@@ -247,8 +248,9 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, start: &Vec3) -> Result<Minimum, WalkEnd> {
-        let first = self.query.evaluate(self.set, start)?;
+    fn run(&mut self, start: &Vec3, is_remembered: bool) -> Result<Minimum, WalkEnd> {
+        let first = self.query.evaluate_first(start, is_remembered)?;
+        self.set.push(&self.query.upper.dir, &first);
         let has_center = self.query.interior.is_some();
         if !has_center {
             // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
@@ -258,7 +260,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 .query
                 .evaluate_point(&(opposite_dir / opposite_dir.norm()))
                 .map_err(Stop::from)?;
-            self.interior = (first.w + opposite.v) * 0.5;
+            self.interior = (first.v + opposite.v) * 0.5;
         }
         let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
         // Without centers, or if the start direction leads to the far side: evaluate the direction from the interior
@@ -397,7 +399,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns the next step from a face with no known difference above it, if it can be taken without a callback.
     fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<WalkStep> {
-        let UpperBound { depth, dir, .. } = self.query.upper;
+        let SupportPlane { depth, dir, .. } = self.query.upper;
         let cosine = face.normal.dot(&dir);
         let angle2 = 2.0 * (1.0 - cosine);
         // A fifth of the tolerance is reserved for the error of the witness points.
@@ -468,7 +470,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Returns whether a prediction is the upper bound, and the model's witness points coincide after obj2 is moved by
     /// the upper bound.
     fn is_upper_bound(&self, prediction: &Prediction, tolerance: f64) -> bool {
-        let UpperBound { depth, dir, .. } = self.query.upper;
+        let SupportPlane { depth, dir, .. } = self.query.upper;
         let turn2 = (prediction.dir - dir).norm_squared();
         let is_coincident = match prediction.model {
             Model::Sphere => {
@@ -482,7 +484,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether the two vertices of the upper bound coincide after obj2 is moved by it.
     fn vertices_coincide(&self, tolerance: f64) -> bool {
-        let UpperBound { depth, dir, point } = self.query.upper;
+        let SupportPlane { depth, dir, point } = self.query.upper;
         (point.v - dir * depth).norm_squared() <= depth * tolerance
     }
 
@@ -633,7 +635,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             }
             WalkStep::Fit(Model::Smooth(_)) | WalkStep::Ray(_) => {}
         }
-        if self.query.has_contradiction(self.set) {
+        if self.query.is_inconsistent(self.set) {
             return Err(WalkEnd::Status(Status::InconsistentSupport));
         }
         self.prove_overlap(face)?;
@@ -642,7 +644,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns the upper bound, with the vertices of its support point for witness points.
     fn upper_bound(&self) -> Minimum {
-        let UpperBound { depth, dir, point } = self.query.upper;
+        let SupportPlane { depth, dir, point } = self.query.upper;
         Minimum {
             dir,
             depth,
@@ -715,9 +717,9 @@ mod tests {
             v2: Vec3::zeros(),
         });
         let before = md.supports();
-        let mut query = SupportQuery::new(md, center.as_ref());
+        let mut query = SupportQuery::new(md, center.as_ref(), 0.0);
         let mut set = VertexSet::<MAX_WALK_POINTS>::EMPTY;
-        let found = penetration(&mut query, &mut set, start, settings);
+        let found = penetration(&mut query, &mut set, start, false, settings);
         (found, md.supports() - before)
     }
 

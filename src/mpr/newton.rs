@@ -18,7 +18,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::math::{Vec3, normalise_unscaled, perpendicular};
-use crate::minkowski::query::UpperBound;
+use crate::minkowski::query::SupportPlane;
 use crate::minkowski::round_fit::MIN_ANGLE2;
 use crate::minkowski::vertex_set::VertexSet;
 
@@ -43,7 +43,7 @@ pub struct NewtonStep {
 ///
 /// For directions n + x, x perpendicular to n, the support function is h + g x + x R x / 2: g is the component of the
 /// support point perpendicular to n, and R is its derivative. Divided by |n + x| it has the gradient g + (R − h) x.
-pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Option<NewtonStep> {
+pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> Option<NewtonStep> {
     let n = upper.dir;
     let at = upper.point.v;
     let first = closest_entry(set, upper, |_| true)?;
@@ -91,7 +91,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &UpperBound) -> Op
 /// another direction and are on the same smooth part of D.
 fn closest_entry<const N: usize>(
     set: &VertexSet<N>,
-    upper: &UpperBound,
+    upper: &SupportPlane,
     is_accepted: impl Fn(usize) -> bool,
 ) -> Option<usize> {
     let mut best = (None, 1.0 / (1.0 + MAX_NEWTON_TAN * MAX_NEWTON_TAN).sqrt());
@@ -107,7 +107,7 @@ fn closest_entry<const N: usize>(
 
 /// Returns whether D counts as smooth between the upper bound and entry `k`: e + f is positive, and e and f differ by
 /// at most [`SMOOTH_REL_TOL`] of it.
-fn is_smooth_between<const N: usize>(upper: &UpperBound, set: &VertexSet<N>, k: usize) -> bool {
+fn is_smooth_between<const N: usize>(upper: &SupportPlane, set: &VertexSet<N>, k: usize) -> bool {
     let d = set.difference(VertexSet::<N>::pair_of_entry(k)) - upper.point.v;
     let (e, f) = (set.dir(k).dot(&d), -upper.dir.dot(&d));
     e + f > 0.0 && (e - f).abs() <= SMOOTH_REL_TOL * (e + f)
@@ -160,7 +160,7 @@ mod tests {
             let radii = Vec3::new(r.within(0.5, 0.6), r.within(0.8, 1.0), r.within(0.8, 1.0));
             let body = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
             let md = difference(body, |_: &Vec3| Vec3::zeros());
-            let mut query = SupportQuery::new(&md, None);
+            let mut query = SupportQuery::new(&md, None, 0.0);
             let mut set = VertexSet::<8>::EMPTY;
             for y in [0.02, -0.03, 0.01] {
                 for z in [0.03, -0.02] {

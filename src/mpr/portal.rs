@@ -24,7 +24,7 @@
 //! direction is a separating axis; this is the separation test.
 
 use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
-use crate::minkowski::query::{Stop, SupportQuery, UpperBound};
+use crate::minkowski::query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::tolerance::{GapLimit, KNOWN_LEVEL};
@@ -150,7 +150,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 /// the ray in D, metres.
 #[inline(always)]
 fn discovery_dir(
-    upper: &UpperBound,
+    upper: &SupportPlane,
     perpendicular: &Vec3,
     height: f64,
     edge: f64,
@@ -303,7 +303,7 @@ mod tests {
             v1: center1,
             v2: center2,
         };
-        let mut query = SupportQuery::new(&md, Some(&c));
+        let mut query = SupportQuery::new(&md, Some(&c), 0.0);
         let mut set = VertexSet::<64>::EMPTY;
         let ray = -c.v.normalize();
         query.evaluate(&mut set, &ray).ok()?;

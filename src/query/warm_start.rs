@@ -16,6 +16,7 @@
 
 use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{EPSILON, Vec3, ZERO, unit};
+use crate::minkowski::general_position::start_direction;
 
 /// Result of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,9 +106,10 @@ impl WarmStart {
     }
 
     /// Makes a state from a guess of the penetration direction, of any length; cold if that is zero or not
-    /// finite.
+    /// finite. The guess is tilted into general position here, because queries evaluate the direction of a state as it
+    /// is.
     pub fn guess(dir: &Vec3) -> Self {
-        unit(dir).map_or(Self::COLD, Self::towards)
+        unit(dir).map_or(Self::COLD, |n| Self::towards(start_direction(&n)))
     }
 
     /// Makes the state of a pair that unit `dir` separates. `target_separation`: metres. `radius`: the radii of
