@@ -36,7 +36,7 @@
 
 use crate::contact::{Penetration, Status};
 use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};
-use crate::epa::plane::Tetrahedron;
+use crate::epa::plane::{PLANE_ERROR_ULPS, Tetrahedron, base_distance};
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::{CAPACITY, contains_origin};
@@ -350,16 +350,15 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     ) -> Result<bool, Stop> {
         let [a, b, c] = portal.each_ref().map(|v| v.w);
         let scale = &self.query.scale;
-        let ulp = f64::EPSILON * scale.size();
-        let Some(tetrahedron) = Tetrahedron::new([self.interior.v, a, b, c], ulp) else {
-            return Ok(false);
-        };
-        let lower = tetrahedron.inner_radius() - tetrahedron.error - scale.support_eps();
+        let size = scale.size();
         let tolerance = scale.tolerance(self.limits.gap.tolerance);
         let allowed = self.limits.gap.allowed(scale, self.query.upper.depth);
-        if !(lower > 0.0 && lower >= self.query.upper.depth - allowed) {
+        let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
+        let least = self.query.upper.depth - allowed + error;
+        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
             return Ok(false);
-        }
+        };
+        let lower = distance - error;
         if is_warm && self.query.upper.depth - lower > tolerance {
             let normal = (b - a).cross(&(c - a));
             self.refine_direction(set, portal, &normal)?;
