@@ -198,13 +198,9 @@ impl<const N: usize> VertexSet<N> {
     /// that differ by less than 2⁻⁴², relatively, count as equal; callers compute heights from the coordinates.
     #[inline(always)]
     pub fn farthest(&self, n: &Vec3) -> VertexPair {
-        // Passed by value: a packed load of a vector that scalar stores have just written waits for them (no
-        // store-to-load forwarding).
-        self.farthest_along(n.x, n.y, n.z)
-    }
-
-    #[inline(never)]
-    fn farthest_along(&self, nx: f64, ny: f64, nz: f64) -> VertexPair {
+        if self.len < 2 {
+            return VertexPair::default();
+        }
         let [x, y, z] = &self.coords;
         let mut best = [f64::NEG_INFINITY; 2];
         let mut index = [0; 2];
@@ -212,7 +208,7 @@ impl<const N: usize> VertexSet<N> {
         let step = core::hint::black_box(&[1, 1]);
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
-                let h = nx * x[i][lane] + ny * y[i][lane] + nz * z[i][lane];
+                let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
                 let tag = Self::INDEX_MARK | index[lane];
                 let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | tag) + 0.0;
                 best[lane] = larger(best[lane], h);
@@ -220,9 +216,6 @@ impl<const N: usize> VertexSet<N> {
             }
         }
         let [a, b] = best.map(|h| (h.to_bits() & Self::INDEX_MASK) as u16);
-        if self.len == 0 {
-            return VertexPair::default();
-        }
         VertexPair { a, b }
     }
 }
