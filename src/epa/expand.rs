@@ -137,7 +137,8 @@ impl<const C: usize> EpaCorners<C> {
         ids: [usize; 3],
     ) -> [Vertex; 3] {
         let [a, b, c] = ids;
-        [a, b, c].map(|id| self.vertex(set, interior, id))
+        let vertex = |id| self.vertex(set, interior, id);
+        [vertex(a), vertex(b), vertex(c)]
     }
 }
 

@@ -332,10 +332,10 @@ impl<const F: usize> EpaPolytope<F> {
                 *a = lesser(*a, *b);
             }
         }
-        let mut key = f64::INFINITY;
-        for b in least {
-            key = lesser(key, b);
-        }
+        let [a, b, c, d, e, f, g, h] = least;
+        let (even, odd) = ([a, c, e, g], [b, d, f, h]);
+        let least = |[a, b, c, d]: [f64; 4]| lesser(lesser(a, b), lesser(c, d));
+        let key = lesser(least(even), least(odd));
         ClosestFace {
             face: (key.to_bits() & INDEX_MASK) as usize,
             key,
@@ -439,7 +439,7 @@ impl<const F: usize> EpaPolytope<F> {
                     self.revert(first, tail, free);
                     return Insertion::NoRoom;
                 }
-                self.add_face(free, edge, [neighbour, point], id, corner);
+                self.add_face(free, [edge, twin], [neighbour, point], id, corner);
                 let (f, new) = (Self::in_range(free), 4 * free);
                 self.twins[f][2] = (previous | 1) as u16;
                 self.set_twin(twin, new);
@@ -470,13 +470,13 @@ impl<const F: usize> EpaPolytope<F> {
         Insertion::Done
     }
 
-    /// Makes face `f` from a horizon edge and a new point, by interpolation. `edge`: the half-edge of the visible face.
-    /// The planes: that of the hidden face, and the point.
+    /// Makes face `f` from a horizon edge and a new point, by interpolation. The half-edges: that of the visible face and
+    /// that of the hidden one. The planes: that of the hidden face, and the point.
     #[inline(always)]
     fn add_face(
         &mut self,
         f: usize,
-        edge: usize,
+        [edge, twin]: [usize; 2],
         [hidden, point]: [Plane; 2],
         id: usize,
         corner: &impl Fn(usize) -> Vec3,
@@ -494,7 +494,7 @@ impl<const F: usize> EpaPolytope<F> {
             square = self.recompute_plane(f, edge >> 2, corner);
         }
         self.keys[f] = Self::key(f, square);
-        self.twins[f][0] = self.twin(edge) as u16;
+        self.twins[f][0] = twin as u16;
         self.twins[f][3] = edge as u16;
     }
 
