@@ -69,8 +69,8 @@ const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
 const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
 /// Fewer than [`max_faces`], because insertions enclose some of the corners and a query is to use at most 44 KB of
 /// stack (test `costs`). Measured on nearly concentric ellipsoids: at most 302 faces up to 140 support points, 352 at the
-/// support limit.
-const LARGE_FACES: usize = 344;
+/// support limit; with 344 a ball around a small hull ended at 149.
+const LARGE_FACES: usize = 360;
 /// The number of vertices of the buffers of an [`Arena`].
 const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
 const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
@@ -355,7 +355,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let allowed = self.limits.gap.allowed(scale, self.query.upper.depth);
         let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
         let least = self.query.upper.depth - allowed + error;
-        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
+        let distance = base_distance(&self.interior.v, &[a, b, c], least, size);
+        // A lower bound of 0 proves no overlap.
+        let Some(distance) = distance.filter(|distance| *distance > error) else {
             return Ok(false);
         };
         let lower = distance - error;
