@@ -276,8 +276,11 @@ mod tests {
         let mut r = crate::shapes::Random::new(5);
         let mut found = [0; 2];
         for _ in 0..20000 {
-            let apex = -Vec3::z() * r.within(0.1, 1.0);
-            let [a, mut b, mut c] = [0, 1, 2].map(|_| r.vector(1.0) + Vec3::z() * 0.6);
+            let apex = r.vector(0.5) - Vec3::z() * r.within(0.5, 2.0);
+            let [a, mut b, mut c] = [0.0, 2.1, 4.2].map(|angle: f64| {
+                let radial = Vec3::new(angle.cos(), angle.sin(), 0.0);
+                radial * r.within(0.2, 2.0) + r.vector(0.5) + Vec3::z() * r.within(0.1, 0.5)
+            });
             if (b - a).cross(&(c - a)).dot(&(a - apex)) < 0.0 {
                 (b, c) = (c, b);
             }
