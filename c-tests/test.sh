@@ -58,10 +58,10 @@ tools() {
     wrong=0
     # shellcheck disable=SC2086  # one word each
     {
-        sh c-tests/tools/check.sh address --test contract --test extension -- $skipped_tests >"$log.address" 2>&1 &
-        sh c-tests/tools/check.sh memcheck --test contract -- $skipped_tests || wrong=1
+        sh c-tests/tools/check.sh address -- contract:: extension:: $skipped_tests >"$log.address" 2>&1 &
+        sh c-tests/tools/check.sh memcheck -- contract:: $skipped_tests || wrong=1
     }
-    sh c-tests/tools/check.sh helgrind --test contract threads || wrong=1
+    sh c-tests/tools/check.sh helgrind contract::threads || wrong=1
     wait $! || wrong=1
     cat "$log.address"
     return "$wrong"

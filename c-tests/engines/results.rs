@@ -7,8 +7,8 @@
 // Each driver uses a part. Comparisons are negated so that NaN counts as a failure.
 #![allow(dead_code, clippy::neg_cmp_op_on_partial_ord)]
 
+use super::programs::{self, CONSUMERS, Column, Method, Output, markdown, program, run_all};
 use crate::harness::callgrind;
-use crate::programs::{self, CONSUMERS, Column, Method, Output, markdown, program, run_all};
 
 /// The deepest overlap that libccd's MPR takes for a miss: two of its tolerances, metres.
 const LIBCCD_MISS_DEPTH: f64 = 2e-6;

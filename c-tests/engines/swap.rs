@@ -5,12 +5,6 @@
 //! library as they run on libccd. The tables of `cargo run --release --example swap`
 //! are made by the same judges.
 
-// Debian's programs are compiled for double.
-#![cfg(not(feature = "single"))]
-
-#[path = "../harness/mod.rs"]
-mod harness;
-
 #[path = "programs.rs"]
 mod programs;
 

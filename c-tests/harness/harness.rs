@@ -3,10 +3,7 @@
 
 //! Checks the harness: each kind of link loads its library, and failures are reported.
 
-#[path = "mod.rs"]
-mod harness;
-
-use harness::{Precision, Program};
+use crate::harness::{Precision, Program};
 
 /// Returns this library's `ccdImplementation()`.
 fn implementation() -> String {

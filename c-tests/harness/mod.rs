@@ -4,7 +4,7 @@
 //! Builds the release library and C or C++ programs that link it, runs them, and asserts which libccd
 //! they load.
 //!
-//! A test driver includes this file with `#[path = "../harness/mod.rs"] mod harness;`
+//! The programs of tests and of the lab include this file as their module `harness`.
 //!
 //! ```ignore
 //! let program = Program::c("exact").source("truth/exact.c").link_ours_shared().build();

@@ -8,7 +8,7 @@
 #   check.sh helgrind [ARGUMENT...]   valgrind's check for data races, likewise
 #   check.sh miri     [ARGUMENT...]   Miri through the exported functions; needs
 #                                     rustup component add --toolchain nightly miri rust-src
-# The arguments are cargo test's: the tests to run, and --features single.
+# The arguments are cargo test's, as the names of tests (contract::) and --features single.
 
 set -eu
 cd "$(dirname "$0")/../.."
@@ -29,10 +29,10 @@ memcheck)
 helgrind)
     export C_TESTS_RUNNER="valgrind --tool=helgrind --quiet --error-exitcode=99"
     ;;
-miri) exec cargo +nightly miri test --test api "$@" ;;
+miri) exec cargo +nightly miri test --test integration "$@" api:: ;;
 *)
     echo "usage: check.sh address|memcheck|helgrind|miri [cargo test's arguments]" >&2
     exit 2
     ;;
 esac
-exec cargo test --no-fail-fast "$@"
+exec cargo test --no-fail-fast --test integration "$@"

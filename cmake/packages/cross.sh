@@ -54,9 +54,9 @@ answers() {
 # All are run, so that one failure does not hide another.
 failed=0
 echo "== $1: contract, configurations, recorded support counts"
-there test --no-fail-fast --test harness --test contract || failed=1
-there test --test stability configurations || failed=1
-there test --test support_counts no_set_needs_more || failed=1
+there test --no-fail-fast --test integration -- harness_itself:: contract:: || failed=1
+there test --test integration stability::configurations || failed=1
+there test --test integration no_set_needs_more || failed=1
 echo "== $1: the same bits as on this machine"
 # The same question must have the same answers; the C library's sine and logarithm, which
 # the questions are made with, are not the same everywhere.

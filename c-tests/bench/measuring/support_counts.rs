@@ -4,21 +4,15 @@
 //! Tests what is measured exactly: recorded support counts, errors, instructions and mispredicted branches, which no
 //! change may exceed.
 
-#![cfg(not(feature = "single"))]
-
-#[path = "../../harness/mod.rs"]
-mod harness;
-#[path = "mod.rs"]
-mod measuring;
-
-use measuring::deep::{self, Polytope};
-use measuring::ledger::{self, Cost};
-use measuring::libraries::Libraries;
-use measuring::measure::Runner;
-use measuring::methods::Start;
-use measuring::recorded::{self, Recorded};
-use measuring::scene::Scene;
-use measuring::{callgrind, csv};
+use crate::harness;
+use crate::measuring::deep::{self, Polytope};
+use crate::measuring::ledger::{self, Cost};
+use crate::measuring::libraries::Libraries;
+use crate::measuring::measure::Runner;
+use crate::measuring::methods::Start;
+use crate::measuring::recorded::{self, Recorded};
+use crate::measuring::scene::Scene;
+use crate::measuring::{callgrind, csv};
 
 /// Compares every set with `support_counts.csv`, which `cargo bench -p charts -- record` writes anew.
 #[test]
@@ -57,7 +51,7 @@ fn no_query_takes_more_instructions() {
         return;
     }
     let libraries = Libraries::open();
-    let command = ["--exact", "no_query_takes_more_instructions", "--test-threads=1"];
+    let command = ["--exact", "support_counts::no_query_takes_more_instructions", "--test-threads=1"];
     let rows = ledger::measure(&libraries, &command, false).unwrap_or_else(|why| panic!("not counted: {why}"));
     if callgrind::is_counting() {
         return;

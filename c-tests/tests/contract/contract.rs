@@ -4,13 +4,10 @@
 //! The contract of libccd.so.2: symbols and ABI against the installed library, headers against the
 //! installed headers, behaviour in C programs.
 
-#[path = "../../harness/mod.rs"]
-mod harness;
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use harness::{Precision, Program};
+use crate::harness::{self, Precision, Program};
 
 const NO_ARGS: [&str; 0] = [];
 

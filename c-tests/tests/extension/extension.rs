@@ -3,10 +3,7 @@
 
 //! The extension, `<ccd/warm.h>` and `<ccd/ccd.hpp>`, from C and C++.
 
-#[path = "../../harness/mod.rs"]
-mod harness;
-
-use harness::{Precision, Program};
+use crate::harness::{self, Precision, Program};
 use std::path::Path;
 use std::process::Command;
 

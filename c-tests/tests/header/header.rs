@@ -6,7 +6,7 @@
 //! cbindgen sorts the items of a file: macros, structs, functions. For a better order each section of
 //! a header is a file, whose first comment is the section's heading.
 //!
-//! `WRITE_HEADER=1 cargo test --test header` writes the headers.
+//! `WRITE_HEADER=1 cargo test --test integration header::` writes the headers.
 
 use std::path::Path;
 
@@ -128,6 +128,6 @@ fn headers_match_the_source() {
         }
         let committed = std::fs::read_to_string(&path).unwrap_or_default();
         let name = header.name;
-        assert!(committed == generated, "{name} is stale: WRITE_HEADER=1 cargo test --test header");
+        assert!(committed == generated, "{name} is stale: WRITE_HEADER=1 cargo test --test integration header::");
     }
 }

@@ -6,10 +6,7 @@
 //! binary. Checks the size, reproducibility and notices of the installed files, and runs the programs
 //! of README.md and include/README.md.
 
-#[path = "../../harness/mod.rs"]
-mod harness;
-
-use harness::{Executable, Precision, Program, must_succeed, output_dir, root};
+use crate::harness::{self, Executable, Precision, Program, must_succeed, output_dir, root};
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;

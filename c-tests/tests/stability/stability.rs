@@ -5,12 +5,9 @@
 //! termination, memory, determinism. The tests build and run C programs, as the library's
 //! users write them; `campaigns.rs` runs the same programs for longer.
 
-#[path = "../../harness/mod.rs"]
-mod harness;
-
 mod programs;
 
-use harness::Precision;
+use crate::harness::{self, Precision};
 #[cfg(any(not(feature = "single"), target_arch = "x86", target_arch = "x86_64"))]
 use programs::alone;
 use programs::program;

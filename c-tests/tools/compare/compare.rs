@@ -4,13 +4,7 @@
 //! compare.sh on programs whose callbacks throw, jump, return wrong points, have memory, and query from many
 //! threads: the program's results are those without the tool, and the counts are those known by other means.
 
-// Debian's libccd is double, and the tool compares with it.
-#![cfg(not(feature = "single"))]
-
-#[path = "../../harness/mod.rs"]
-mod harness;
-
-use harness::{Executable, Program, fields, root};
+use crate::harness::{self, Executable, Program, fields, root};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;

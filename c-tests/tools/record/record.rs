@@ -3,13 +3,7 @@
 
 //! Tests the truth of the recorded contact sequence, and the results of libccd's calls and of the extension on it.
 
-// The recording and Debian's libccd are double.
-#![cfg(not(feature = "single"))]
-
-#[path = "../../harness/mod.rs"]
-mod harness;
-
-use harness::{Program, root};
+use crate::harness::{Program, root};
 use std::path::PathBuf;
 
 fn recording() -> PathBuf {
