@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Names the shared library as libccd's own, and links it by GNU ld on ELF systems that have it;
-//! nothing else is built here. The tests, and the benchmark, whose package has this
+//! nothing else is built here. The tests, and the lab, whose package (c-tests/lab) has this
 //! script too, learn what they are compiled for, to compile C for the same.
 
 use std::env::var;

@@ -2,8 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Runs all tests in double and in single precision, and the C programs of the contract under
-# sanitizers and valgrind, after setup.sh. The last line counts the tests.
+# Runs all tests of a commit after setup.sh: in double precision all, in single precision those of the library, the
+# contract and stability, and C programs under sanitizers and valgrind. The last line counts the tests.
+# lab/release.sh runs the others before a release.
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -67,8 +68,14 @@ tools() {
     return "$wrong"
 }
 run "gcc's sanitizers; valgrind, memory and threads" tools
+single() {
+    wrong=0
+    cargo test --no-fail-fast --features single --lib || wrong=1
+    cargo test --no-fail-fast --features single --test integration -- contract:: stability:: || wrong=1
+    return "$wrong"
+}
 # Last: the others run programs in double precision.
-run "single precision" cargo test --no-fail-fast --features single
+run "single precision: library, contract and stability" single
 
 printf '\n%s passed, %s failed, %s skipped\n' "$passed" "$failed" "$skipped"
 [ "$failed" -eq 0 ]

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Builds and runs the programs of this folder on libccd and on this library, and reads the
-//! counters that they print. The tests (`swap.rs`) and the tables (`table.rs`) share it.
+//! counters that they print. The tests (`swap.rs`) and the lab share it.
 
 // Each driver uses a part.
 #![allow(dead_code)]
 
-use crate::harness::{self, Executable, Precision, Program, must_succeed, output_dir, root, run_command};
+use crate::harness::{self, Executable, Program, root, run_command};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-/// Returns a program of this folder, linked to the library that its name begins with.
+/// Returns a program of this folder or of `lab/engines`, linked to the library that its name begins with.
 pub fn program(file: &str) -> Program {
     let (name, extension) = file.split_once('.').expect("a source file");
     let program = match extension {
@@ -22,17 +22,14 @@ pub fn program(file: &str) -> Program {
         _ => Program::cpp(name).flag("-isystem/usr/include/eigen3"),
     };
     let library = name.split('_').next().expect("a library");
-    program.source(format!("engines/{file}")).flag("-D_GNU_SOURCE").library(library).without_tools()
+    let tests = root().join("c-tests");
+    let folder = ["engines", "lab/engines"].into_iter().find(|folder| tests.join(folder).join(file).exists());
+    program
+        .source(tests.join(folder.unwrap_or_default()).join(file))
+        .flag("-D_GNU_SOURCE")
+        .library(library)
+        .without_tools()
 }
-
-/// The programs whose simulation steps are timed and whose queries compare.sh's screen shows: title, file,
-/// arguments, number of steps.
-pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
-    ("ODE, a pile", "ode_pile.c", "1 1500 32 pile", 1500.0),
-    ("MuJoCo 2, a pile", "mujoco_pile.c", "1 1500 30 pile", 1500.0),
-    ("DART over FCL, a pile", "dart_pile.cpp", "1 3000 15 fcl", 3000.0),
-    ("FCL, bodies that drift", "fcl_scene.cpp", "0 300 200 0", 300.0),
-];
 
 /// Output of a program.
 pub struct Output {
@@ -118,6 +115,11 @@ impl Method {
         Method { is_ours: true, ..Method::libccd(name, program) }
     }
 
+    /// Gives it another name.
+    pub fn named(self, name: &'static str) -> Method {
+        Method { name, ..self }
+    }
+
     /// Adds a first argument.
     pub fn first(mut self, argument: impl Into<OsString>) -> Method {
         self.first.push(argument.into());
@@ -179,104 +181,4 @@ pub fn ours_judged(program: Program) -> [Method; 2] {
     let [_, ours] = compared(program.clone(), "1");
     let theirs = program.flag("-rdynamic").link_system().build().quiet();
     [Method::libccd("libccd", theirs), ours]
-}
-
-/// Returns the screen that compare.sh prints about a program.
-pub fn screen(file: &str, arguments: &str) -> String {
-    let program = program(file).flag("-DTIMED").link_system().build().quiet();
-    let written = program.compared(&[]).with_screen().run(arguments.split(' '));
-    let name = file.split('.').next().unwrap_or_default();
-    let path = program.path.to_string_lossy();
-    let screen = written.stderr.replace(&*path, &format!("./{name} {arguments}"));
-    // The program's own output on stderr comes before.
-    screen[screen.find("== ").unwrap_or(0)..].trim().to_owned()
-}
-
-/// Returns FCL's signed distance on libccd, on this library, and on this library with
-/// `libwarmccd-fcl.so` preloaded.
-pub fn fcl_distance() -> [Method; 3] {
-    // The rows of configurations.h name the fields that they set.
-    let [theirs, ours] = on_both(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"));
-    let library = output_dir().join("libwarmccd-fcl.so");
-    let mut compile = harness::compile_with(&harness::compiler(true));
-    compile.args(["-std=c++11", "-fPIC", "-shared", "-Wextra", "-Werror"]);
-    compile.args(["-fvisibility=hidden", "-isystem/usr/include/eigen3"]);
-    compile.arg("-I").arg(root().join("include"));
-    compile.arg(root().join("cmake/fcl/signed_distance.cpp")).arg("-o").arg(&library);
-    compile.arg("-L").arg(&harness::library(Precision::Double).dir).arg("-lccd");
-    must_succeed(&mut compile, "the compiler (for libwarmccd-fcl.so)");
-    let preloaded = Method { name: "this library and `libwarmccd-fcl.so`", ..ours.clone() };
-    [theirs, ours, preloaded.preload(library)]
-}
-
-/// Returns the four narrow phases of `fcl_scene`, judged by their answers; or timed, without the judge.
-pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
-    let program = || match is_timed {
-        true => program("fcl_scene.cpp").flag("-DTIMED"),
-        false => program("fcl_scene.cpp"),
-    };
-    let [theirs, ours] = if is_timed {
-        on_both(program())
-    } else {
-        let both = program().link_ours_renamed_and_system().build().quiet();
-        let options = ["--every", "1", "--no-times", "--swap"];
-        let [theirs, ours] = [&options[..3], &options].map(|options| both.compared(options));
-        [Method::libccd("", theirs), Method::ours("", ours)]
-    };
-    let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE").link_ours_shared().build().quiet();
-    [
-        Method { name: "`fcl::collide` on libccd", ..theirs }.first("0"),
-        Method { name: "`fcl::collide` on this library", ..ours }.first("0"),
-        Method::ours("`ccd/fcl.hpp`, one contact a pair", header.clone()).first("1"),
-        Method::ours("`ccd/fcl.hpp`, up to 8 contacts", header).first("8"),
-    ]
-}
-
-/// Returns an ODE scene on libccd as ODE queries it, and with geometries that this library collides, with one
-/// contact a pair and with several.
-pub fn ode_world(libccd: Method) -> [Method; 3] {
-    let world = |contacts| {
-        let program = program("ode_pile.c").flag(format!("-DCONTACTS={contacts}")).flag("-DOURS_ALONE");
-        program.link_ours_shared().build().quiet()
-    };
-    [
-        libccd,
-        Method::ours("this library, one contact a pair", world(1)),
-        Method::ours("this library, `ccdContacts`", world(8)),
-    ]
-}
-
-/// Returns python-fcl's wheel on the libccd that it carries and with this library preloaded; an error where
-/// pip cannot install it.
-pub fn python_wheel() -> Result<[Method; 2], String> {
-    let dir = output_dir().join("wheel");
-    let python = dir.join("bin/python");
-    let try_to = |command: &mut Command| {
-        let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
-        let error = String::from_utf8_lossy(&output.stderr).into_owned();
-        output.status.success().then_some(()).ok_or(error)
-    };
-    if try_to(Command::new(&python).args(["-c", "import fcl"])).is_err() {
-        try_to(Command::new("python3").args(["-m", "venv"]).arg(&dir))?;
-        let mut pip = Command::new(&python);
-        try_to(pip.args(["-m", "pip", "install", "--only-binary=:all:", "python-fcl"]))?;
-    }
-    let python = Executable::from_path("python-fcl", python);
-    let script = root().join("c-tests/engines/wheel.py");
-    let theirs = Method::libccd("the wheel's libccd", python.clone()).first(&script);
-    let ours = Method::ours("this library", python).first(&script);
-    let library = harness::library(Precision::Double).dir.join("libccd.so");
-    Ok([theirs, ours.preload(library)])
-}
-
-/// A column of a table: heading and cell.
-pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
-
-/// Returns a Markdown table with a row for each of `rows`.
-pub fn markdown<T>(rows: &[T], columns: &[Column<T>]) -> String {
-    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let head = line(columns.iter().map(|(heading, _)| (*heading).to_owned()).collect());
-    let rule = format!("|{}\n", "---|".repeat(columns.len()));
-    let rows = rows.iter().map(|row| line(columns.iter().map(|(_, cell)| cell(row)).collect()));
-    [head, rule].into_iter().chain(rows).collect()
 }

@@ -131,16 +131,48 @@ pub fn library(precision: Precision) -> &'static LibraryBuild {
     LIBRARIES[precision as usize].get_or_init(|| build_library(precision))
 }
 
+/// Returns the folder in which cargo builds the library for programs. CMake builds it there again with the same flags, so
+/// that each precision is compiled once.
+pub fn cargo_dir() -> PathBuf {
+    output_dir().join("library")
+}
+
+/// Returns the flags of rustc with which `cmake/CMakeLists.txt` builds the library.
+fn rust_flags() -> OsString {
+    let variable = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let home = variable("CARGO_HOME").or_else(|| Some(variable("HOME")? + "/.cargo")).unwrap_or_default();
+    let own = [format!("--remap-path-prefix={home}=/cargo"), format!("--remap-path-prefix={}=.", root().display())];
+    let given = variable("CARGO_ENCODED_RUSTFLAGS").map(|flags| vec![flags]);
+    let given = given.unwrap_or_else(|| words("RUSTFLAGS"));
+    [given, own.to_vec()].concat().join("\u{1f}").into()
+}
+
+/// Returns the linker flags for a program with a static library of Rust's.
+fn native_flags() -> Vec<String> {
+    let empty = tempfile::tempdir().expect("a temporary directory");
+    let source = empty.path().join("empty.rs");
+    fs::write(&source, "").unwrap_or_else(|e| panic!("{}: {e}", source.display()));
+    let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+    rustc.args(["--crate-type", "staticlib", "--print", "native-static-libs"]);
+    if emulated() {
+        rustc.args(["--target", TARGET]);
+    }
+    let messages = must_succeed(rustc.arg("-o").arg(empty.path().join("empty.a")).arg(&source), "rustc").stderr;
+    let flags = messages.lines().find_map(|line| line.split_once("native-static-libs: "));
+    let (_, flags) = flags.unwrap_or_else(|| panic!("rustc did not report native-static-libs:\n{messages}"));
+    flags.split_whitespace().map(String::from).collect()
+}
+
 fn build_library(precision: Precision) -> LibraryBuild {
     let output = output_dir();
-    // Both precisions share their crates. Of parallel test binaries one builds, the others wait.
-    let target = output.join("library");
+    // Both precisions share their crates. Of parallel processes one builds, the others wait.
+    let target = cargo_dir();
     let lock = locked(&output.join("library.lock"));
 
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.args(["rustc", "--release", "--lib", "--manifest-path"]);
-    cargo.arg(root().join("Cargo.toml"));
-    cargo.arg("--target-dir").arg(&target);
+    cargo.current_dir(root()).env("CARGO_ENCODED_RUSTFLAGS", rust_flags());
+    cargo.args(["rustc", "--release", "--lib", "--locked", "--crate-type", "staticlib,cdylib", "--target-dir"]);
+    cargo.arg(&target);
     if precision == Precision::Single {
         cargo.args(["--features", "single"]);
     }
@@ -149,13 +181,7 @@ fn build_library(precision: Precision) -> LibraryBuild {
         cargo.args(["--target", TARGET]);
         release = target.join(TARGET).join("release");
     }
-    // Cargo repeats rustc's messages when everything is up to date.
-    cargo.args(["--", "--print", "native-static-libs"]);
-    let messages = must_succeed(&mut cargo, "Rust's cargo").stderr;
-    let native_flags = messages.lines().find_map(|line| line.split_once("native-static-libs: "));
-    let (_, native_flags) =
-        native_flags.unwrap_or_else(|| panic!("rustc did not report native-static-libs:\n{messages}"));
-    let native_flags = native_flags.split_whitespace().map(String::from).collect();
+    must_succeed(&mut cargo, "Rust's cargo");
 
     let dir = output.join(precision.name());
     fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
@@ -169,7 +195,7 @@ fn build_library(precision: Precision) -> LibraryBuild {
     replace(&dir.join("libccd.so.2"), |new| std::os::unix::fs::symlink("libccd.so", new));
     rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
     drop(lock);
-    LibraryBuild { dir, native_flags }
+    LibraryBuild { dir, native_flags: native_flags() }
 }
 
 /// Opens a file and locks it against all other threads and processes.
@@ -191,11 +217,16 @@ pub fn installed(command: &str) -> bool {
 }
 
 /// Returns the value of the first line of a file that starts with `key`.
-fn value_in(file: &str, key: &str) -> String {
+fn value_in(file: impl AsRef<Path>, key: &str) -> String {
     let text = fs::read_to_string(file).unwrap_or_default();
     let line = text.lines().find(|line| line.starts_with(key));
     let value = line.and_then(|line| line.split_once(['=', ':']));
     value.map_or("unknown".to_owned(), |(_, value)| value.replace('"', "").trim().to_owned())
+}
+
+/// Returns `version` or `rust-version` of the library's package.
+pub fn of_package(key: &str) -> String {
+    value_in(root().join("Cargo.toml"), key)
 }
 
 /// Returns the system's release and the processor, for figures measured on this machine.

@@ -24,9 +24,6 @@ mod packaging;
 
 // What the answers are worth. Recordings, Debian's programs and Debian's libccd are double.
 #[cfg(not(feature = "single"))]
-#[path = "../tools/compare/compare.rs"]
-mod compare;
-#[cfg(not(feature = "single"))]
 #[path = "../tools/record/record.rs"]
 mod record;
 #[path = "stability/stability.rs"]

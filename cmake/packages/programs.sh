@@ -18,7 +18,7 @@ each() {
 }
 
 build() {
-    source=$(find c-tests/engines -name "$1.c*")
+    source=$(find c-tests/engines c-tests/lab/engines -name "$1.c*")
     # shellcheck disable=SC2086  # flags, one word each
     $2 -O2 -w -I /usr/include/eigen3 -I c-tests -I ours "$source" -o "$1" $3 -lccd -lm
 }

@@ -84,7 +84,7 @@ impl Libraries {
     pub fn open() -> Self {
         let work = tempfile::tempdir().expect("a temporary directory");
         let object = work.path().join("callbacks.so");
-        let compiler = compile(false, &[], "measuring/callbacks.c", &object, &[]);
+        let compiler = compile(false, &[], "bench/measuring/callbacks.c", &object, &[]);
         let compiler = compiler.unwrap_or_else(|e| panic!("the callbacks do not compile: {e}"));
 
         // The bare name: what the system's loader finds, which must not be this library. First, because both have that
@@ -153,7 +153,7 @@ impl Libraries {
     /// Compiles a part of `peers.cpp` and opens it; returns why not, if that fails.
     pub fn peer(&self, part: &str, flags: &[String], linked: &[String]) -> Result<&'static Library, String> {
         let object = self.work.path().join(format!("{part}.so"));
-        compile(true, flags, "peers.cpp", &object, linked)?;
+        compile(true, flags, "lab/charts/peers.cpp", &object, linked)?;
         open(&object).map_err(|e| e.to_string())
     }
 
@@ -166,7 +166,7 @@ impl Libraries {
     }
 }
 
-/// Compiles a source file of `c-tests/bench` to a shared object: fast code, and on x86-64 that of every machine of the last ten years.
+/// Compiles a source file of `c-tests` to a shared object: fast code, and on x86-64 that of every machine of the last ten years.
 /// Returns the compiler and its usual flags.
 fn compile(cpp: bool, flags: &[String], source: &str, object: &Path, linked: &[String]) -> Result<String, String> {
     let mut compiler = harness::compiler(cpp);
@@ -180,7 +180,7 @@ fn compile(cpp: bool, flags: &[String], source: &str, object: &Path, linked: &[S
     let shown = own.collect::<Vec<_>>().join(" ");
     let tests = harness::root().join("c-tests");
     compile.arg("-I").arg(harness::root().join("include")).arg("-I").arg(&tests).args(flags);
-    compile.args(["-shared", "-fPIC"]).arg(tests.join("bench").join(source));
+    compile.args(["-shared", "-fPIC"]).arg(tests.join(source));
     compile.arg("-o").arg(object).args(linked).arg("-lm");
     let run = compile.output().map_err(|e| format!("{tool:?}: {e}"))?;
     if !run.status.success() {

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Libraries side by side, scenes with truth, one table of methods, and one runner. The benchmark (`c-tests/bench`) and the
-//! test of the recorded counts (`support_counts.rs`) each use a part.
+//! Libraries side by side, scenes with truth, one table of methods, and one runner. The charts (`c-tests/lab/charts`) and
+//! the test of the recorded counts (`support_counts.rs`) each use a part.
 
 #![allow(dead_code)]
 
 pub mod callgrind;
 pub mod csv;
-pub mod deep;
 pub mod ledger;
 pub mod libraries;
 pub mod measure;

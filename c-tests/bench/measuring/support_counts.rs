@@ -5,16 +5,12 @@
 //! change may exceed.
 
 use crate::harness;
-use crate::measuring::deep::{self, Polytope};
 use crate::measuring::ledger::{self, Cost};
 use crate::measuring::libraries::Libraries;
-use crate::measuring::measure::Runner;
-use crate::measuring::methods::Start;
 use crate::measuring::recorded::{self, Recorded};
-use crate::measuring::scene::Scene;
 use crate::measuring::{callgrind, csv};
 
-/// Compares every set with `support_counts.csv`, which `cargo bench -p charts -- record` writes anew.
+/// Compares every set with `support_counts.csv`, which `cargo bench -p lab -- record` writes anew.
 #[test]
 fn no_set_needs_more_supports_or_errs_more() {
     let libraries = Libraries::open();
@@ -73,19 +69,5 @@ fn no_query_takes_more_instructions() {
         assert!(raised.is_empty(), "{}", raised.join("\n"));
     } else {
         println!("not judged: recorded with\n{toolchain}\nhere\n{}", libraries.toolchain);
-    }
-}
-
-/// Checks that DEEP's depths are support values, never below the certified minimum, and from 5° nearly always the minimum.
-#[test]
-fn deep_walks_to_local_minima() {
-    let libraries = Libraries::open();
-    for name in ["p12_p12", "p42_p42", "p162_p162"] {
-        let scene = Scene::load(&libraries, name, 200);
-        let meshes = Polytope::of_set(name).expect("two polytopes");
-        for row in Runner::new(&libraries, 0).rows(&scene, deep::methods(&libraries, &meshes, Start::Guess5)) {
-            assert!(row.unsound < 1e-12 && row.missed == 0.0, "{row:?}");
-            assert!(row.shallow == 0.0 && row.nonminimal < 5.0, "{row:?}");
-        }
     }
 }

@@ -3,7 +3,7 @@
 
 //! Where penetration methods fail: configurations, categories of pairs, continuity,
 //! termination, memory, determinism. The tests build and run C programs, as the library's
-//! users write them; `campaigns.rs` runs the same programs for longer.
+//! users write them; `c-tests/lab/campaigns.rs` runs the same programs for longer.
 
 mod programs;
 

@@ -2,20 +2,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Longer runs of the programs that the tests run on a sample, and their tables:
-//! `cargo run --release --example campaigns -- NAME [ARGUMENT...]`.
+//! `cargo run --release -p lab --bin campaigns -- NAME [ARGUMENT...]`.
 //!
 //! | name | what | arguments and their defaults |
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
-//! | `states` | every kind of warm start state (`../extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
+//! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
 //! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | digests that `cmake/packages/cross.sh` compares between processors | |
 
-#[path = "../../harness/mod.rs"]
+#[path = "../harness/mod.rs"]
 mod harness;
+#[path = "../tests/stability/programs.rs"]
 mod programs;
 
 use harness::{Executable, Program};

@@ -3,19 +3,13 @@
 
 //! Tests that the files of the quick charts are whole, and that the results of this library are sound.
 
-// The benchmark's own parts, of which this test uses some.
-#[allow(dead_code)]
-#[path = "figures/mod.rs"]
-mod charts;
-#[path = "../harness/mod.rs"]
-mod harness;
-#[path = "measuring/mod.rs"]
-mod measuring;
-#[allow(dead_code)]
-mod peers;
-
-use measuring::csv;
-use measuring::measure::Row;
+use crate::charts;
+use crate::charts::deep::{self, Polytope};
+use crate::measuring::csv;
+use crate::measuring::libraries::Libraries;
+use crate::measuring::measure::{Row, Runner};
+use crate::measuring::methods::Start;
+use crate::measuring::scene::Scene;
 
 #[test]
 fn quick_charts_are_whole_and_sound() {
@@ -42,4 +36,18 @@ fn quick_charts_are_whole_and_sound() {
     }
     let page = std::fs::read_to_string(out.path().join("README.md")).unwrap_or_default();
     assert!(page.contains("# Speed against accuracy") && !page.contains("{{"), "{page}");
+}
+
+/// Checks that DEEP's depths are support values, never below the certified minimum, and from 5° nearly always the minimum.
+#[test]
+fn deep_walks_to_local_minima() {
+    let libraries = Libraries::open();
+    for name in ["p12_p12", "p42_p42", "p162_p162"] {
+        let scene = Scene::load(&libraries, name, 200);
+        let meshes = Polytope::of_set(name).expect("two polytopes");
+        for row in Runner::new(&libraries, 0).rows(&scene, deep::methods(&libraries, &meshes, Start::Guess5)) {
+            assert!(row.unsound < 1e-12 && row.missed == 0.0, "{row:?}");
+            assert!(row.shallow == 0.0 && row.nonminimal < 5.0, "{row:?}");
+        }
+    }
 }

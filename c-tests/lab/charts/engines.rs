@@ -7,13 +7,13 @@
 use std::process::Command;
 
 use super::{OUT, Page, figure, results};
+use crate::charts::peers::{self, Peers};
 use crate::harness;
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::{Row, Runner};
 use crate::measuring::methods::{Start, select};
 use crate::measuring::scene::Scene;
 use crate::measuring::{callgrind, csv};
-use crate::peers::{self, Peers};
 
 /// Of every engine whose tolerance is not built in, in metres.
 const METHODS: [(&str, Start, f64); 3] = [
@@ -58,7 +58,7 @@ pub fn draw(page: &Page, rows: &[Row]) {
 pub fn run() {
     let libraries = Libraries::open();
     if !callgrind::is_counting() {
-        let script = harness::root().join("c-tests/bench/engines.sh");
+        let script = harness::root().join("c-tests/lab/charts/engines.sh");
         if let Err(why) = Command::new("sh").arg(script).arg(peers::engines()).status() {
             println!("nothing downloaded: {why}");
         }

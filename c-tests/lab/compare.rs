@@ -14,7 +14,7 @@ fn on_libccd(program: Program) -> Executable {
 }
 
 fn callbacks() -> Executable {
-    let program = Program::cpp("callbacks").source("tools/compare/callbacks.cpp");
+    let program = Program::cpp("callbacks").source("lab/callbacks.cpp");
     on_libccd(program.flag("-pthread"))
 }
 

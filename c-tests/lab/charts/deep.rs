@@ -18,9 +18,9 @@ use std::ffi::c_void;
 use ccd::internals::ffi::{ccd_t, ccd_vec3_t};
 use nalgebra::{Matrix3, Vector3};
 
-use super::libraries::Libraries;
-use super::methods::{Answer, Entry, Method, Start, find_call, run_call};
-use super::scene::{Pair, Scene};
+use crate::measuring::libraries::Libraries;
+use crate::measuring::methods::{Answer, Entry, Method, Start, find_call, run_call};
+use crate::measuring::scene::{Pair, Scene};
 
 type V = Vector3<f64>;
 

@@ -4,9 +4,9 @@
 //! The paper's Section IV measured again: figures over vertex counts, the comparison with DEEP, the ablation of the
 //! shortcut.
 
+use super::deep::{self, Polytope};
 use super::figure::{self, Axis, Panel, SUPPORTS, TIME, VERTICES};
 use super::{Bench, Page};
-use crate::measuring::deep::{self, Polytope};
 use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
 use crate::measuring::scene::Scene;
@@ -19,7 +19,7 @@ const NUM_VERTICES: [usize; 5] = [12, 42, 162, 642, 2562];
 pub const PAPER: [(&str, f64); 3] = [("sph_sph", 44.8), ("cap_cap", 24.7), ("sph_cap", 30.8)];
 
 /// The tolerance at which the paper's algorithms are as exact here as its Table I says, and need the support points of its
-/// implementation: 58, 47 and 55 on the pairs of the tables, against 56, 48 and 55 (`c-tests/bench/published.csv`).
+/// implementation: 58, 47 and 55 on the pairs of the tables, against 56, 48 and 55 (`c-tests/lab/charts/published.csv`).
 pub const AS_PUBLISHED: f64 = 1e-5;
 
 const METHODS: [(&str, Start, f64); 7] = [

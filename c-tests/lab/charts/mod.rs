@@ -6,9 +6,11 @@
 
 pub mod accuracy;
 pub mod coherence;
+pub mod deep;
 pub mod engines;
 pub mod figure;
 pub mod paper;
+pub mod peers;
 pub mod results;
 
 use std::path::PathBuf;
@@ -20,7 +22,7 @@ use crate::measuring::csv;
 use crate::measuring::ledger::{self, Cost};
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::{Row, Runner};
-use crate::peers::Peers;
+use peers::Peers;
 
 #[derive(Args)]
 pub struct Options {
@@ -35,7 +37,7 @@ pub struct Options {
     pub out: PathBuf,
 }
 
-const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/charts");
+const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../bench/charts");
 
 /// Inputs of every measurement.
 pub struct Bench<'a> {

@@ -1,15 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The benchmark (README.md): one runner over one table of methods.
+//! The benchmark (`c-tests/bench/README.md`): one runner over one table of methods.
 
-#[path = "figures/mod.rs"]
+#[path = "mod.rs"]
 mod charts;
-#[path = "../harness/mod.rs"]
+#[path = "../../harness/mod.rs"]
 mod harness;
-#[path = "measuring/mod.rs"]
+#[path = "../../bench/measuring/mod.rs"]
 mod measuring;
-mod peers;
 
 use clap::{Parser, Subcommand};
 use measuring::libraries::Libraries;
@@ -17,7 +16,7 @@ use measuring::{callgrind, ledger, recorded};
 
 /// Speed and accuracy of penetration depth, this library beside others.
 #[derive(Parser)]
-#[command(name = "charts")]
+#[command(name = "bench")]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -4,26 +4,24 @@
 //! Prints the swap tables, Debian's FCL, ODE, MuJoCo and DART on libccd and on this
 //! library, as Markdown; progress goes to stderr.
 //!
-//! `cargo run --example swap` the single queries of the test, in more poses (a minute)
-//! `cargo run --example swap -- world` ODE worlds collided by this library alone (3 minutes)
-//! `cargo run --example swap -- scene` a scene through FCL's broad phase (half a minute)
-//! `cargo run --example swap -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
-//! `cargo run --example swap -- screens` compare.sh's screen of a program of each consumer's (a minute)
-//! `cargo run --release --example swap -- steps` a step of whole programs on both libraries (2 minutes)
-//! `cargo run --example swap -- long` whole simulations, longer and harder (3 minutes)
+//! `cargo run -p lab --bin engines` the single queries of the test, in more poses (a minute)
+//! `cargo run -p lab --bin engines -- world` ODE worlds collided by this library alone (3 minutes)
+//! `cargo run -p lab --bin engines -- scene` a scene through FCL's broad phase (half a minute)
+//! `cargo run -p lab --bin engines -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
+//! `cargo run -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
+//! `cargo run --release -p lab --bin engines -- steps` a step of whole programs on both libraries (2 minutes)
+//! `cargo run -p lab --bin engines -- long` whole simulations, longer and harder (3 minutes)
 
-#[path = "../harness/mod.rs"]
+#[path = "mod.rs"]
+mod engines;
+#[path = "../../harness/mod.rs"]
 mod harness;
 
-#[path = "programs.rs"]
-mod programs;
-
-#[path = "results.rs"]
-mod results;
-
+use engines::consumers::{self, CONSUMERS};
+use engines::programs::{compared, program, run_all};
+use engines::results::{self, Simulation, swapped};
+use engines::tables;
 use harness::write_between_marks;
-use programs::{CONSUMERS, compared, program, run_all};
-use results::{Simulation, swapped};
 
 fn single_queries() {
     let ode = compared(program("ode_static.c"), "0");
@@ -33,7 +31,7 @@ fn single_queries() {
         ("ODE collide, its cylinder corrected", run_all(&ode, "2 200 corrected")),
     ];
     for (title, outputs) in rows {
-        println!("{}{}", results::collide_table(title, &outputs), results::collide_failures(&outputs).join("\n"));
+        println!("{}{}", tables::collide_table(title, &outputs), results::collide_failures(&outputs).join("\n"));
     }
 }
 
@@ -52,12 +50,12 @@ fn long() {
         swapped("DART over FCL", &dart, 8, 3000, "15 fcl"),
         swapped("DART over ODE", &dart, 8, 3000, "15 ode"),
     ];
-    println!("{}", results::simulation_table(&rows));
+    println!("{}", tables::simulation_table(&rows));
 }
 
 /// Prints the screens, and writes the first into this folder's page.
 fn screens() {
-    let screens = CONSUMERS.map(|(_, file, arguments, _)| programs::screen(file, arguments));
+    let screens = CONSUMERS.map(|(_, file, arguments, _)| consumers::screen(file, arguments));
     println!("{}", screens.join("\n\n"));
     let first = format!("\n```text\n{}\n```\n", screens[0]);
     write_between_marks("c-tests/engines/README.md", "screens", &first);
@@ -66,7 +64,7 @@ fn screens() {
 /// Prints the processor time of a step on both libraries, which take turns, and writes it into the
 /// front page.
 fn steps() {
-    let table = format!("{}\n{}.\n", results::step_table(5), harness::machine());
+    let table = format!("{}\n{}.\n", tables::step_table(5), harness::machine());
     println!("{table}");
     write_between_marks("README.md", "steps", &table);
 }
@@ -75,14 +73,14 @@ fn world() {
     let rows: [Simulation; 3] =
         [("stack", 20, 10_000), ("hulls", 32, 3000), ("roll", 12, 3000)].map(|(scene, bodies, steps)| {
             let [libccd, _] = compared(program("ode_pile.c"), "10");
-            results::world(libccd, scene, 10, steps, bodies)
+            tables::world(libccd, scene, 10, steps, bodies)
         });
-    println!("{}", results::simulation_table(&rows));
+    println!("{}", tables::simulation_table(&rows));
 }
 
 fn scene() {
-    println!("{}", results::scene_table(&results::scenes(300, 100, 7)));
-    println!("{}", results::header_table(&results::header_costs(7)));
+    println!("{}", tables::scene_table(&tables::scenes(300, 100, 7)));
+    println!("{}", tables::header_table(&tables::header_costs(7)));
 }
 
 fn main() {
@@ -90,7 +88,7 @@ fn main() {
     match std::env::args().nth(1).as_deref() {
         None => single_queries(),
         Some("long") => long(),
-        Some("distance") => println!("{}", results::distance_table(&programs::fcl_distance().map(|m| m.run("10000")))),
+        Some("distance") => println!("{}", tables::distance_table(&consumers::fcl_distance().map(|m| m.run("10000")))),
         Some("scene") => scene(),
         Some("screens") => screens(),
         Some("steps") => steps(),

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Builds the programs that run before a release alone: other consumers of libccd, and ODE and FCL collided by this
+//! library's own interface.
+
+use super::programs::{Method, on_both, program};
+use crate::harness::{self, Executable, Precision, must_succeed, output_dir, root};
+use std::process::Command;
+
+/// The programs whose simulation steps are timed and whose queries compare.sh's screen shows: title, file,
+/// arguments, number of steps.
+pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
+    ("ODE, a pile", "ode_pile.c", "1 1500 32 pile", 1500.0),
+    ("MuJoCo 2, a pile", "mujoco_pile.c", "1 1500 30 pile", 1500.0),
+    ("DART over FCL, a pile", "dart_pile.cpp", "1 3000 15 fcl", 3000.0),
+    ("FCL, bodies that drift", "fcl_scene.cpp", "0 300 200 0", 300.0),
+];
+
+/// Returns the screen that compare.sh prints about a program.
+pub fn screen(file: &str, arguments: &str) -> String {
+    let program = program(file).flag("-DTIMED").link_system().build().quiet();
+    let written = program.compared(&[]).with_screen().run(arguments.split(' '));
+    let name = file.split('.').next().unwrap_or_default();
+    let path = program.path.to_string_lossy();
+    let screen = written.stderr.replace(&*path, &format!("./{name} {arguments}"));
+    // The program's own output on stderr comes before.
+    screen[screen.find("== ").unwrap_or(0)..].trim().to_owned()
+}
+
+/// Returns FCL's signed distance on libccd, on this library, and on this library with
+/// `libwarmccd-fcl.so` preloaded.
+pub fn fcl_distance() -> [Method; 3] {
+    // The rows of configurations.h name the fields that they set.
+    let [theirs, ours] = on_both(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"));
+    let library = output_dir().join("libwarmccd-fcl.so");
+    let mut compile = harness::compile_with(&harness::compiler(true));
+    compile.args(["-std=c++11", "-fPIC", "-shared", "-Wextra", "-Werror"]);
+    compile.args(["-fvisibility=hidden", "-isystem/usr/include/eigen3"]);
+    compile.arg("-I").arg(root().join("include"));
+    compile.arg(root().join("cmake/fcl/signed_distance.cpp")).arg("-o").arg(&library);
+    compile.arg("-L").arg(&harness::library(Precision::Double).dir).arg("-lccd");
+    must_succeed(&mut compile, "the compiler (for libwarmccd-fcl.so)");
+    let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
+    [theirs, ours, preloaded.preload(library)]
+}
+
+/// Returns the four narrow phases of `fcl_scene`, judged by their answers; or timed, without the judge.
+pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
+    let program = || match is_timed {
+        true => program("fcl_scene.cpp").flag("-DTIMED"),
+        false => program("fcl_scene.cpp"),
+    };
+    let [theirs, ours] = if is_timed {
+        on_both(program())
+    } else {
+        let both = program().link_ours_renamed_and_system().build().quiet();
+        let options = ["--every", "1", "--no-times", "--swap"];
+        let [theirs, ours] = [&options[..3], &options].map(|options| both.compared(options));
+        [Method::libccd("", theirs), Method::ours("", ours)]
+    };
+    let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE").link_ours_shared().build().quiet();
+    [
+        theirs.named("`fcl::collide` on libccd").first("0"),
+        ours.named("`fcl::collide` on this library").first("0"),
+        Method::ours("`ccd/fcl.hpp`, one contact a pair", header.clone()).first("1"),
+        Method::ours("`ccd/fcl.hpp`, up to 8 contacts", header).first("8"),
+    ]
+}
+
+/// Returns an ODE scene on libccd as ODE queries it, and with geometries that this library collides, with one
+/// contact a pair and with several.
+pub fn ode_world(libccd: Method) -> [Method; 3] {
+    let world = |contacts| {
+        let program = program("ode_pile.c").flag(format!("-DCONTACTS={contacts}")).flag("-DOURS_ALONE");
+        program.link_ours_shared().build().quiet()
+    };
+    [
+        libccd,
+        Method::ours("this library, one contact a pair", world(1)),
+        Method::ours("this library, `ccdContacts`", world(8)),
+    ]
+}
+
+/// Returns python-fcl's wheel on the libccd that it carries and with this library preloaded; an error where
+/// pip cannot install it.
+pub fn python_wheel() -> Result<[Method; 2], String> {
+    let dir = output_dir().join("wheel");
+    let python = dir.join("bin/python");
+    let try_to = |command: &mut Command| {
+        let output = command.output().map_err(|e| format!("{command:?}: {e}"))?;
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        output.status.success().then_some(()).ok_or(error)
+    };
+    if try_to(Command::new(&python).args(["-c", "import fcl"])).is_err() {
+        try_to(Command::new("python3").args(["-m", "venv"]).arg(&dir))?;
+        let mut pip = Command::new(&python);
+        try_to(pip.args(["-m", "pip", "install", "--only-binary=:all:", "python-fcl"]))?;
+    }
+    let python = Executable::from_path("python-fcl", python);
+    let script = root().join("c-tests/lab/engines/wheel.py");
+    let theirs = Method::libccd("the wheel's libccd", python.clone()).first(&script);
+    let ours = Method::ours("this library", python).first(&script);
+    let library = harness::library(Precision::Double).dir.join("libccd.so");
+    Ok([theirs, ours.preload(library)])
+}

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Programs linked to Debian's FCL, ODE, MuJoCo and DART run on this library as they run on libccd, in scenes that take
+//! minutes; the tables of `cargo run --release -p lab --bin engines` are made by the same judges.
+
+use crate::engines::programs::{ours_judged, program, run_all};
+use crate::engines::results::swapped;
+use crate::engines::{consumers, tables};
+
+/// This library changes nothing about FCL's own signed distance; with `libwarmccd-fcl.so` FCL answers every
+/// configuration, touching boxes and random pairs right, and throws nothing.
+#[test]
+fn fcl_signed_distance() {
+    let outputs = run_all(&consumers::fcl_distance(), "1000");
+    let function = outputs.each_ref().map(|o| o.text.lines().find_map(|line| line.strip_prefix("function ")));
+    let [Some(on_libccd), Some(on_ours), Some("libwarmccd-fcl.so")] = function else { panic!("{function:?}") };
+    assert!([on_libccd, on_ours].iter().all(|file| file.starts_with("libfcl.so")), "{function:?}");
+    let [theirs, ours, preloaded] = outputs;
+    for set in tables::DISTANCE_SETS {
+        let all = |keys: &str| keys.split(' ').map(|key| format!("{set}.{key}")).collect::<Vec<_>>().join(" ");
+        assert!(preloaded.value(&all("queries")) >= 100.0, "{set}");
+        let failures = preloaded.nonzero(&all("threw endless wrong outside"));
+        assert!(failures.is_empty(), "{set}: {failures:?}\n{}", preloaded.wrong().join("\n"));
+        for key in ["threw", "endless", "wrong", "outside"].map(all) {
+            assert!(ours.value(&key) <= theirs.value(&key), "{key}\n{}", ours.text);
+        }
+    }
+    let [there, here] = [&theirs, &ours].map(|output| output.value("random.error_sum"));
+    assert!(here <= there + 1e-6, "{here} m off in all, {there} m on libccd");
+}
+
+/// A preloaded library takes the place of the shared libccd that python-fcl's wheel carries.
+#[test]
+fn python_wheel_by_preloading() {
+    match consumers::python_wheel() {
+        Err(error) => println!("skipped: python-fcl does not install: {error}"),
+        Ok(methods) => {
+            let [theirs, ours] = run_all(&methods, "1000");
+            assert_eq!(ours.sum("wheel.missed wheel.deep"), 0.0, "{}", ours.text);
+            assert!(theirs.value("wheel.deep") > 0.0, "nothing to correct: {}", theirs.text);
+        }
+    }
+}
+
+#[test]
+fn ode_pile() {
+    swapped("ODE, pile", &ours_judged(program("ode_pile.c")), 10, 1500, "32 pile").assert_passes();
+}
+
+#[test]
+fn mujoco_pile() {
+    swapped("MuJoCo, pile", &ours_judged(program("mujoco_pile.c")), 10, 1500, "30 pile").assert_passes();
+}
+
+#[test]
+fn dart_over_fcl_and_ode() {
+    let methods = ours_judged(program("dart_pile.cpp"));
+    for arguments in ["12 fcl", "12 ode"] {
+        swapped("DART", &methods, 10, 800, arguments).assert_passes();
+    }
+}
+
+/// Towers on several contacts a pair gain no more energy and sink no deeper than on libccd's one.
+#[test]
+fn towers_on_several_contacts_a_pair() {
+    let [libccd, _] = ours_judged(program("ode_pile.c"));
+    tables::world(libccd, "stack", 10, 1500, 20).assert_passes();
+}
+
+/// Towers on the one contact a pair that ODE takes from libccd, and a tower whose hulls just touch.
+#[test]
+fn towers_on_one_contact_a_pair() {
+    let methods = ours_judged(program("ode_pile.c"));
+    for arguments in ["20 stack", "6 tower"] {
+        let mut towers = swapped("ODE, towers", &methods, 2, 3000, arguments);
+        towers.judge_rest(1.0, 5e-3);
+        towers.assert_passes();
+    }
+}
+
+/// This library misses nothing and keeps its bound on the depth behind FCL's narrow phase and behind
+/// `<ccd/fcl.hpp>`.
+#[test]
+fn fcl_scene_judged() {
+    let [theirs, ours @ ..] = tables::scenes(12, 20, 0);
+    for key in ["judged.pairs", "judged.exact"] {
+        assert!(theirs.value(key) > 100.0, "{key}: {}", theirs.text);
+        assert!(ours.iter().all(|scene| scene.value(key) == theirs.value(key)), "{key}");
+    }
+    assert!(theirs.value("judged.hits") > 100.0);
+    for scene in &ours {
+        // FCL's own closed forms are not this library's answers.
+        let failures = scene.nonzero("put.missed put.spurious put.off");
+        assert!(failures.is_empty(), "{failures:?}");
+    }
+}
+
+/// `<ccd/fcl.hpp>` spends little outside the library and the callbacks.
+#[test]
+fn fcl_header_costs_little() {
+    let costs = tables::header_costs(0);
+    assert!(costs[0].share < 0.12, "{}", tables::header_table(&costs));
+}
