@@ -361,9 +361,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
         self.with_separating_axis(state, |state| {
+            let ray = self.cold_start();
+            let is_remembered = state.kind == WarmKind::Overlap;
+            let dir = if is_remembered { state.dir } else { ray };
+            let tolerance = limits.gap.tolerance;
+            let mut query = SupportQuery::new(&self.difference, interior, tolerance);
+            // Most queries of separated objects end here, before the request is made.
+            let first = query.evaluate_first(&dir, is_remembered)?;
             let request = EpaRequest {
                 center: interior,
-                ray: self.cold_start(),
+                ray,
                 // A separating axis has been evaluated already.
                 warm: match state.kind {
                     WarmKind::Separated => WarmStart::COLD,
@@ -372,10 +379,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 limits: *limits,
                 wants_points: self.wants_points,
             };
-            let tolerance = limits.gap.tolerance;
-            let mut query = SupportQuery::new(&self.difference, interior, tolerance);
-            let (dir, is_remembered) = request.first_dir();
-            let first = query.evaluate_first(&dir, is_remembered)?;
             self.run_global_from_first(&mut query, &first, &request, arena, state, wants_pos, hit)
         })
     }

@@ -139,18 +139,6 @@ pub struct EpaRequest<'a> {
     pub wants_points: bool,
 }
 
-impl EpaRequest<'_> {
-    /// Returns the direction to evaluate first, unit, and whether it is that of the last query.
-    #[inline(always)]
-    pub fn first_dir(&self) -> (Vec3, bool) {
-        if self.warm.kind == WarmKind::Overlap {
-            (self.warm.dir, true)
-        } else {
-            (self.ray, false)
-        }
-    }
-}
-
 /// Result of the search without a polytope.
 enum PortalEnd {
     /// The minimum is proven, and the result is written.
@@ -181,7 +169,7 @@ struct Solver<'q, 'm, A, B> {
 }
 
 /// Finds the global minimum of the penetration depth, by the steps at the head of this file, and writes it to `hit`,
-/// without a contact position. `first`: the support point along [`EpaRequest::first_dir`], which does not separate
+/// without a contact position. `first`: the support point along the warm state's direction or the ray, which does not separate
 /// ([`SupportQuery::evaluate_first`]: most queries of separated objects end there, before this function's stack is in
 /// use). Without an `arena` there are only the buffers on the stack. Returns the status and the state for the next
 /// query; `set` has the vertices of the first support calls, for the contact position.
