@@ -342,10 +342,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let tolerance = scale.tolerance(self.limits.gap.tolerance);
         let allowed = self.limits.gap.allowed(scale, self.query.upper.depth);
         let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
-        let least = self.query.upper.depth - allowed + error;
-        let distance = base_distance(&self.interior.v, &[a, b, c], least, size);
         // A lower bound of 0 proves no overlap.
-        let Some(distance) = distance.filter(|distance| *distance > error) else {
+        let least = larger(self.query.upper.depth - allowed, 0.0) + error;
+        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
             return Ok(false);
         };
         let lower = distance - error;

@@ -203,10 +203,10 @@ impl Tetrahedron {
     }
 }
 
-/// Returns the distance of the plane of `base` from the origin, metres, if the ball of that radius around the origin is in
-/// the tetrahedron of `apex` and `base`, within the error of planes ([`PLANE_ERROR_ULPS`]). `None` if the distance is less
-/// than `least`, a positive one, or if another face is closer, or nearly so. The corners of `base` are in the order in which
-/// their normal points away from `apex`. `size`: the size of D, metres.
+/// Returns the distance of the plane of `base` from the origin, metres, if it is more than `least`, not negative, and
+/// the ball of that radius around the origin is in the tetrahedron of `apex` and `base`, within the error of planes
+/// ([`PLANE_ERROR_ULPS`]); `None` otherwise, also if another face is closer than the base, or nearly so. The corners of
+/// `base` are in the order in which their normal points away from `apex`. `size`: the size of D, metres.
 ///
 /// It needs one of the four square roots and divisions of a [`Tetrahedron`].
 #[inline(always)]
@@ -224,7 +224,7 @@ pub fn base_distance(apex: &Vec3, base: &[Vec3; 3], least: f64, size: f64) -> Op
         d > 0.0 && d * d >= distance * distance * n.norm_squared()
     };
     // Written for NaN.
-    let is_in = distance >= least
+    let is_in = distance > least
         && normal.dot(apex) < 0.0
         && is_farther(a, b)
         && is_farther(b, c)
@@ -290,6 +290,9 @@ mod tests {
             };
             let (inner, base) = (planes.inner_radius(), planes.planes[2].offset());
             let distance = base_distance(&apex, &[a, b, c], 0.1, size);
+            // An origin on the outer side of the base is not in the tetrahedron.
+            let is_outside = base_distance(&apex, &[a, b, c], 0.0, size).is_none();
+            assert!(inner > 0.0 || is_outside);
             if inner == base && base > 0.1 + 1e-9 {
                 found[0] += 1;
                 assert!((distance.unwrap() - inner).abs() <= 2.0 * planes.error);
