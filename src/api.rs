@@ -10,6 +10,7 @@
 use core::fmt;
 
 use crate::contact;
+use crate::contact::Status;
 use crate::contact::manifold;
 use crate::contact::manifold_cache;
 use crate::ffi::arena::OwnedBuffers;
@@ -401,7 +402,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: point_if(want.points, hit.point2),
         support_points: pair.difference.supports(),
         iterations: hit.iterations,
-        limit: hit.limit,
+        limit: hit.status != Status::Converged,
     }))
 }
 
@@ -541,7 +542,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: point_if_wanted(d.point2),
         support_points: pair.difference.supports(),
         iterations: d.iterations,
-        limit: d.is_limited,
+        limit: d.status != Status::Converged,
     })
 }
 

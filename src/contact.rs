@@ -4,9 +4,9 @@
 //! Settings and results of the solvers, the contact position and the contact manifold.
 //!
 //! All guarantees assume convex objects and support functions that return a farthest point. If the global query
-//! notices that a support function contradicts itself ([`Status::InconsistentSupport`]), it sets
-//! [`Penetration::limit`]: `depth_lower` is then 0, and `depth` is the least support value of the points that the
-//! support functions returned when each direction was evaluated twice. Moving obj2 by it need not separate the objects.
+//! notices that a support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and
+//! `depth` is the least support value of the points that the support functions returned when each direction was
+//! evaluated twice. Moving obj2 by it need not separate the objects.
 
 pub mod center_of_pressure;
 pub mod face;
@@ -34,21 +34,40 @@ pub struct Settings {
     pub max_iterations: u64,
 }
 
-/// Cause of a solver's end. The depth is sound for all causes except [`Status::InconsistentSupport`].
+/// The cause of the end of a search, which tells which outputs are valid. The results are as exact as requested only
+/// for [`Status::Converged`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Status {
-    /// The gap between the bounds is within the tolerance.
+    /// The search ended within the tolerance. All outputs are valid.
     #[default]
     Converged,
-    /// `max_iterations` was reached.
+    /// `max_iterations` was reached. Depth, directions, bounds and witness points are valid.
     IterationLimit,
-    /// The library's own limit of support points was reached.
+    /// The library's own limit of support points was reached. Valid as for [`Status::IterationLimit`].
     SupportLimit,
-    /// Rounding ended the search.
+    /// Rounding ended the search: more support points would not help. Valid as for [`Status::IterationLimit`].
     Rounding,
-    /// A support function contradicts itself, or (local search only) a center is outside its object. Nothing is
-    /// proven.
+    /// Two points of a support function contradict each other. The depth is sound for the points that were returned,
+    /// nothing is proven, and the lower bound of the depth is 0.
     InconsistentSupport,
+}
+
+impl Status {
+    /// Returns the status of a search that ended early, with `iterations` left of `max_iterations`, of which the
+    /// library allows `cap`.
+    pub(crate) fn of_early_end(iterations_left: u64, max_iterations: u64, cap: u64) -> Self {
+        match (iterations_left, max_iterations < cap) {
+            (0, true) => Status::IterationLimit,
+            (0, false) => Status::SupportLimit,
+            _ => Status::Rounding,
+        }
+    }
+
+    /// Returns [`Status::Converged`] if the criterion is met, else this status.
+    pub(crate) fn unless(self, is_met: bool) -> Self {
+        if is_met { Status::Converged } else { self }
+    }
 }
 
 /// An overlap: depth, direction, position.
@@ -71,8 +90,8 @@ pub struct Penetration {
     pub point2: Vec3,
     /// Number of iterations of the solver, as [`Settings::max_iterations`] counts them.
     pub iterations: u64,
-    /// True if a limit, rounding or an inconsistent support function ended the search before the tolerance was met.
-    pub limit: bool,
+    /// Why the search ended.
+    pub status: Status,
 }
 
 impl Penetration {

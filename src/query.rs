@@ -15,15 +15,15 @@
 //! 4. *Contact position*: compute the [`center_of_pressure`], or take the middle of the witness points.
 //! 5. *Warm start state*: store it in the [`WarmStart`], if the caller keeps one.
 //!
-//! Outputs of an overlap; `limit`: the search ended before the tolerance was met.
+//! Outputs of an overlap, if `status` is [`Status::Converged`]; "else": if it is not.
 //!
 //! | query | `depth` | `depth_lower` | `pos` |
 //! |---|---|---|---|
-//! | default | global minimum within max(tolerance, 0.1 %); with `limit` an upper bound | proven if the centers lie in their objects | center of pressure; with `limit` the middle of the witness points |
-//! | proven | global minimum within the tolerance; with `limit` an upper bound | proven | as default |
-//! | local | local minimum; with `limit` an upper bound | 0; without centers, after a fallback to the global search, proven | as default |
-//! | incremental | local minimum; with `limit` an upper bound | 0 | as default; in a plane the middle of the witness points |
-//! | directional | depth along the direction; with `limit` an upper bound | along the direction; proven if the centers lie in their objects | the middle of the witness points |
+//! | default | global minimum within max(tolerance, 0.1 %); else an upper bound | proven if the centers lie in their objects | center of pressure; else the middle of the witness points |
+//! | proven | global minimum within the tolerance; else an upper bound | proven | as default |
+//! | local | local minimum; else an upper bound | 0; without centers, after a fallback to the global search, proven | as default |
+//! | incremental | local minimum; else an upper bound | 0 | as default; in a plane the middle of the witness points |
+//! | directional | depth along the direction; else an upper bound | along the direction; proven if the centers lie in their objects | the middle of the witness points |
 //!
 //! All rows assume valid support functions ([`crate::contact`]).
 
@@ -199,18 +199,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         wants_pos: bool,
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
-        let status = self.run_local(state, settings, wants_pos, hit)?;
-        if status == Status::Converged {
+        self.run_local(state, settings, wants_pos, hit)?;
+        if hit.status == Status::Converged {
             return Ok(());
         }
         let local_iterations = hit.iterations;
         let mut limits = EpaLimits::new(settings, 0.0, MAX_DEFAULT_POINTS);
         limits.max_iterations -= local_iterations;
-        let is_minimum =
-            self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)?;
-        // A local minimum suffices here, so the flag is cleared if the local search confirmed one.
-        if hit.limit && is_minimum {
-            hit.limit = false;
+        // A local minimum suffices here.
+        if self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)? {
+            hit.status = Status::Converged;
             if wants_pos {
                 hit.pos = self.cold_contact_position(hit, settings.tolerance)?;
             }
@@ -239,7 +237,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         settings: &Settings,
         wants_pos: bool,
         hit: &mut Penetration,
-    ) -> Result<Status, Stop> {
+    ) -> Result<(), Stop> {
         self.with_separating_axis(state, |state| {
             if self.centers.is_some_and(|c| state.is_swapped(&c.v)) {
                 *state = WarmStart::COLD;
@@ -249,21 +247,19 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let tolerance = settings.tolerance;
             let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
             let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-            let (found, status) =
-                local::penetration(&mut query, &mut set, &start, is_remembered, settings)?;
-            *hit = found;
+            *hit = local::penetration(&mut query, &mut set, &start, is_remembered, settings)?;
             *state = self.with_centers(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
-            if status == Status::Converged && wants_pos {
+            if hit.status == Status::Converged && wants_pos {
                 hit.pos = self.contact_position(&set, hit, settings.tolerance)?;
             }
-            Ok(status)
+            Ok(())
         })
     }
 
     /// Improves an uncertified depth by a local search from its direction, to a hundredth of the tolerance. If the
     /// minimum is not unique, a polytope may not certify it within the limits, and the upper bound may exceed it
     /// by more than the tolerance; but the direction of the upper bound is close to a minimum.
-    /// Returns whether the depth is a local minimum within the tolerance.
+    /// Returns whether the depth is a local minimum within the tolerance. The status stays: why it is not certified.
     #[cold]
     #[inline(never)]
     fn improve_locally(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
@@ -276,15 +272,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let start = hit.normal;
         let found = local::penetration(&mut query, &mut set, &start, true, &settings);
-        let Some((found, Status::Converged)) = if_overlapping(found)? else {
+        let Some(found) = if_overlapping(found)? else {
             return Ok(false);
         };
-        let is_minimum = found.depth <= hit.depth + query.scale.tolerance(settings.tolerance);
+        let is_minimum = found.status == Status::Converged
+            && found.depth <= hit.depth + query.scale.tolerance(settings.tolerance);
         if is_minimum {
             *hit = Penetration {
                 depth_lower: hit.depth_lower.min(found.depth),
                 iterations: hit.iterations + found.iterations,
-                limit: true,
+                status: hit.status,
                 ..found
             };
         }
@@ -309,7 +306,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let mut set = VertexSet::EMPTY;
             self.prove_overlap(hit, &mut set, settings, plane.is_some())?;
             *state = self.with_centers(WarmStart::towards(hit.normal));
-            hit.pos = if wants_pos && !hit.limit && plane.is_none() {
+            hit.pos = if wants_pos && hit.status == Status::Converged && plane.is_none() {
                 self.contact_position(&set, hit, settings.tolerance)?
             } else {
                 hit.middle()
@@ -349,7 +346,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// Finds the global minimum of the depth from the state. `interior`: a point trusted to lie in D. Returns
-    /// whether the depth is a minimum within the tolerance, a local one if `hit.limit`.
+    /// whether a depth that is not certified is a local minimum within the tolerance.
     #[inline(never)]
     fn run_global(
         &self,
@@ -401,20 +398,18 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<bool, Stop> {
         let mut set = VertexSet::EMPTY;
-        let (status, warm) =
-            epa::penetration::penetration(query, first, request, arena, &mut set, hit)?;
+        let warm = epa::penetration::penetration(query, first, request, arena, &mut set, hit)?;
         if self.keeps_state {
             *state = self.with_centers(warm);
         }
-        hit.limit = status != Status::Converged;
-        if !hit.limit {
+        if hit.status == Status::Converged {
             if wants_pos {
                 hit.pos = self.contact_position(&set, hit, request.limits.gap.tolerance)?;
             }
-            return Ok(true);
+            return Ok(false);
         }
-        let is_minimum =
-            status != Status::InconsistentSupport && self.improve_locally(hit, &request.limits)?;
+        let is_minimum = hit.status != Status::InconsistentSupport
+            && self.improve_locally(hit, &request.limits)?;
         hit.pos = hit.middle();
         Ok(is_minimum)
     }
@@ -439,11 +434,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Penetration,
     ) -> Result<(), Stop> {
         self.with_separating_axis(state, |state| {
-            let capped = Settings {
-                max_iterations: settings.max_iterations.min(MAX_PROVEN_POINTS),
-                ..*settings
-            };
-            let (found, portal) = directional::along(&self.difference, &dir, &capped)?;
+            let (found, portal) = directional::along(&self.difference, &dir, settings)?;
             *hit = found;
             let mut set = VertexSet::EMPTY;
             for plane in portal.iter().flat_map(|p| &p.planes) {
@@ -483,7 +474,7 @@ mod tests {
         };
         let mut hit = Penetration::default();
         pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
-        assert!(!hit.limit);
+        assert_eq!(hit.status, Status::Converged);
         (pair.difference.supports(), hit.depth, state)
     }
 

@@ -171,8 +171,8 @@ struct Solver<'q, 'm, A, B> {
 /// Finds the global minimum of the penetration depth, by the steps at the head of this file, and writes it to `hit`,
 /// without a contact position. `first`: the support point along the warm state's direction or the ray, which does not separate
 /// ([`SupportQuery::evaluate_first`]: most queries of separated objects end there, before this function's stack is in
-/// use). Without an `arena` there are only the buffers on the stack. Returns the status and the state for the next
-/// query; `set` has the vertices of the first support calls, for the contact position.
+/// use). Without an `arena` there are only the buffers on the stack. Returns the state for the next query; `set` has the
+/// vertices of the first support calls, for the contact position.
 ///
 /// # Errors
 /// [`Stop::Separated`]: the objects are separated, or in contact within rounding. [`Fault::NonFinite`];
@@ -185,7 +185,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     mut arena: Option<&mut dyn Arena>,
     set: &mut VertexSet<SMALL_VERTICES>,
     hit: &mut Penetration,
-) -> Result<(Status, WarmStart), Stop> {
+) -> Result<WarmStart, Stop> {
     set.push(&query.upper.dir, first);
     let warm = &request.warm;
     let is_warm = warm.kind == WarmKind::Overlap;
@@ -217,10 +217,11 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         solver.hit.depth_lower = 0.0;
         status = Status::InconsistentSupport;
     }
+    solver.hit.status = status;
     let SupportPlane { dir, depth, .. } = solver.query.upper;
     let radius = solver.fit.confirmed_radius();
     let is_round = solver.iterations > MAX_POLYHEDRON_ITERATIONS;
-    Ok((status, WarmStart::hit(dir, depth, radius, is_round)))
+    Ok(WarmStart::hit(dir, depth, radius, is_round))
 }
 
 impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {

@@ -16,13 +16,14 @@
 //! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the
 //!    distance is proven to be larger than `max_distance`.
 //!
-//! Outputs, valid for every [`GjkEnd`]: `lower` is a bound along `normal`; `upper` is the distance
-//! of the two points. [`GjkEnd::Inside`]: the origin is in the simplex, and the points coincide.
+//! Outputs, valid for every [`Status`]: `lower` is a bound along `normal`; `upper` is the distance
+//! of the two points. `is_inside`: the origin is in the simplex, and the points coincide.
 
+use crate::contact::Status;
 use crate::gjk::barycentric;
 use crate::gjk::intersect::{CAPACITY, Enclosing};
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact};
-use crate::math::{Vec3, larger, unit};
+use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::query::SupportQuery;
 use crate::minkowski::round_fit::{MIN_GAIN, PREDICTION_REL_TOL, SphereFit};
 use crate::minkowski::support::{Fault, SupportMap};
@@ -47,19 +48,6 @@ pub struct Goal {
     pub max_samples: u64,
 }
 
-/// Cause of the end of a search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GjkEnd {
-    /// The criterion of [`Goal`] is met.
-    Met,
-    /// The simplex contains the origin.
-    Inside,
-    /// No point of D is closer than the simplex by more than rounding.
-    Stalled,
-    /// The limit on the support points is reached.
-    Limit,
-}
-
 /// The bounds of the distance and the closest points.
 #[derive(Clone, Copy, Debug)]
 pub struct ClosestPoints {
@@ -73,7 +61,10 @@ pub struct ClosestPoints {
     pub point2: Vec3,
     /// Number of support points.
     pub iterations: u64,
-    pub end: GjkEnd,
+    /// Why the search ended; converged also if the origin is in the simplex.
+    pub status: Status,
+    /// True if the origin is in the simplex.
+    pub is_inside: bool,
 }
 
 /// Finds the closest points. Starts along unit `start`; `fit` may hold the sphere radii of the last query.
@@ -96,10 +87,11 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         to_origin: *start,
         upper: f64::INFINITY,
         was_prediction: false,
+        is_inside: false,
     };
     let before = search.query.support_points();
-    let end = search.run(goal, start, is_remembered)?;
-    let (point1, point2) = search.points(end);
+    let status = search.run(goal, start, is_remembered)?;
+    let (point1, point2) = search.points();
     let iterations = search.query.support_points() - before;
     let bound = search.query.upper;
     Ok(ClosestPoints {
@@ -109,7 +101,8 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         point1,
         point2,
         iterations,
-        end,
+        status,
+        is_inside: search.is_inside,
     })
 }
 
@@ -126,13 +119,15 @@ struct ClosestPointsSearch<'s, 'q, A, B> {
     /// True if the last query was a prediction; the next query is then none. With a radius that is far too large,
     /// e.g. of a foreign state, each prediction is confirmed but turns the plane by very little.
     was_prediction: bool,
+    /// True if the simplex contains the origin.
+    is_inside: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     /// Returns the closest points; if the origin is in the simplex, two coincident points of the objects.
-    fn points(&self, end: GjkEnd) -> (Vec3, Vec3) {
+    fn points(&self) -> (Vec3, Vec3) {
         let point = |corner: Vertex| self.set.point(corner.pair);
-        if end == GjkEnd::Inside {
+        if self.is_inside {
             let corners = self.simplex.tetrahedron().map(point);
             return Enclosing { corners }.witnesses();
         }
@@ -141,7 +136,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     }
 
     /// Runs the search.
-    fn run(&mut self, goal: &Goal, start: &Vec3, is_remembered: bool) -> Result<GjkEnd, Fault> {
+    fn run(&mut self, goal: &Goal, start: &Vec3, is_remembered: bool) -> Result<Status, Fault> {
         let first = self
             .query
             .evaluate_signed_first(&mut self.set, start, is_remembered)?
@@ -154,13 +149,13 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_STEPS {
                 match self.add_farthest(KNOWN_LEVEL * self.gap(goal)) {
-                    None => return Ok(GjkEnd::Inside),
+                    None => return Ok(Status::Converged),
                     Some(true) => (),
                     Some(false) => break,
                 }
             }
             if self.is_goal_met(goal) {
-                return Ok(GjkEnd::Met);
+                return Ok(Status::Converged);
             }
             if is_step {
                 if !(self.upper < closest) {
@@ -169,7 +164,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
                 closest = self.upper;
             }
             let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
-                return Ok(GjkEnd::Stalled);
+                return Ok(Status::Rounding);
             };
             is_step = !self.query_prediction(&dir, self.gap(goal))?;
             if !is_step {
@@ -184,14 +179,10 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             }
             let w = self.query.evaluate_signed(&mut self.set, &dir)?.vertex();
             if self.height(&dir, &w.w) > 0.5 * self.query.scale.contact_eps() && !self.add(w) {
-                return Ok(GjkEnd::Inside);
+                return Ok(Status::Converged);
             }
         }
-        Ok(if self.is_goal_met(goal) {
-            GjkEnd::Met
-        } else {
-            GjkEnd::Limit
-        })
+        Ok(Status::of_early_end(0, goal.max_samples, ITERATION_CAP).unless(self.is_goal_met(goal)))
     }
 
     /// Returns the largest accepted gap between the bounds, metres; a NaN tolerance counts as infinite.
@@ -272,6 +263,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let scale = &self.query.scale;
         let (contact_eps, size2) = (scale.contact_eps(), scale.size2());
         let Some((to_origin, distance2)) = self.simplex.add(w, contact_eps, size2) else {
+            self.is_inside = true;
             return false;
         };
         (self.to_origin, self.upper) = (to_origin, larger(distance2, 0.0).sqrt());
@@ -327,7 +319,7 @@ mod tests {
                 }
             };
             let found = find(f64::INFINITY).unwrap();
-            assert_eq!(found.end, GjkEnd::Met);
+            assert!(found.status == Status::Converged && !found.is_inside);
             assert!((found.lower - gap).abs() <= 1e-5, "round {round}");
             assert!((found.upper - gap).abs() <= 1e-5, "round {round}");
             assert!(found.lower <= gap + 1e-6 && found.upper >= gap - 1e-6);
@@ -355,7 +347,7 @@ mod tests {
             let start = r.direction();
             let mut query = SupportQuery::new(&md, None, 0.0);
             let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
-            assert_eq!(found.end, GjkEnd::Inside);
+            assert!(found.is_inside);
             assert!(found.upper < 1e-6 && found.lower < 0.0);
         }
     }
@@ -391,7 +383,7 @@ mod tests {
             // The weights of the corners are rounded too.
             let is_closed = gap <= 16.0 * query.scale.contact_eps();
             assert!(
-                found.end != GjkEnd::Met || is_closed,
+                found.status != Status::Converged || found.is_inside || is_closed,
                 "round {round}: {gap}"
             );
         }

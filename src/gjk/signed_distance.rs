@@ -13,11 +13,11 @@
 //!
 //! The state of the last query only selects where the search starts; no bound depends on it.
 //!
-//! Outputs: both bounds are valid, also if `is_limited`. The points lie on the surfaces of the objects with
-//! their margins.
+//! Outputs: both bounds are valid, whatever the status, except for [`Status::InconsistentSupport`]. The points lie on
+//! the surfaces of the objects with their margins.
 
-use crate::contact::{Penetration, Settings};
-use crate::gjk::closest_points::{ClosestPoints, GjkEnd, Goal, closest_points};
+use crate::contact::{Penetration, Settings, Status};
+use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
 use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::round_fit::SphereFit;
@@ -61,8 +61,8 @@ pub struct Distance {
     pub iterations: u64,
     /// True if the objects overlap. Objects that touch within rounding do not; their distance is 0.
     pub is_hit: bool,
-    /// True if the gap between the bounds exceeds the tolerance: a limit or rounding ended the search.
-    pub is_limited: bool,
+    /// Why the search ended.
+    pub status: Status,
 }
 
 /// Computes the signed distance of the objects with their margins. Starts from the state of the pair's last
@@ -95,8 +95,8 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
     let (mut cores, radius, mut contact_eps) =
         find_cores(md, centers, wanted, &start, axis.is_some(), state.radius)?;
     // Without a separating plane the overlap test decides, however close the bounds are.
-    let is_undecided = cores.end != GjkEnd::Limit && !(cores.lower >= -contact_eps);
-    if cores.end == GjkEnd::Inside || is_undecided {
+    let is_at_limit = matches!(cores.status, Status::IterationLimit | Status::SupportLimit);
+    if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
         *state = WarmStart::towards(cores.normal);
         if let Some(distance) = depth(state)? {
             return Ok(distance);
@@ -108,7 +108,7 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
         contact_eps = larger(contact_eps, h.abs());
         (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
         let is_met = cores.upper <= larger(contact_eps, wanted.settings.tolerance);
-        cores.end = if is_met { GjkEnd::Met } else { GjkEnd::Limit };
+        cores.status = Status::Rounding.unless(is_met);
     }
     let distance = separated_distance(&cores, contact_eps, wanted);
     *state = WarmStart::separated(cores.normal, larger(distance.lower, 0.0), radius);
@@ -156,7 +156,7 @@ fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
         point2: hit.point2 - n * wanted.margin2,
         iterations: hit.iterations,
         is_hit: lower < 0.0,
-        is_limited: hit.limit,
+        status: hit.status,
     }
 }
 
@@ -173,12 +173,12 @@ fn separated_distance(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) 
     let (mut lower, mut upper) = (cores.lower - margin, cores.upper - margin);
     // If the cores touch within rounding, further queries cannot improve the bounds.
     let is_touch = cores.lower >= -contact_eps && cores.upper <= contact_eps;
-    let mut is_limited = cores.end != GjkEnd::Met && !is_touch;
+    let mut status = cores.status.unless(is_touch);
     if lower.abs() <= contact_eps + 4.0 * EPSILON * margin {
         lower = 0.0;
         upper = larger(upper, 0.0);
-        // Recompute the flag from the clamped bounds.
-        is_limited &= !(upper <= larger(contact_eps, wanted.settings.tolerance));
+        // The gap is that of the clamped bounds.
+        status = status.unless(upper <= larger(contact_eps, wanted.settings.tolerance));
     }
     Distance {
         lower,
@@ -188,6 +188,6 @@ fn separated_distance(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) 
         point2: cores.point2 - along * wanted.margin2,
         iterations: cores.iterations,
         is_hit: lower < 0.0,
-        is_limited,
+        status,
     }
 }

@@ -9,16 +9,17 @@
 //!
 //! Departures: those of [`crate::mpr::gao`]. The bounds are measured along the ray.
 //!
-//! Outputs. `limit` is set if the bounds differ by more than the effective tolerance, whatever ended the search. The
+//! Outputs. `status`: converged if the bounds differ by at most the effective tolerance, whatever ended the search. The
 //! overlap is not proven here.
 
-use crate::contact::{Penetration, Settings};
+use crate::contact::{Penetration, Settings, Status};
+use crate::epa::penetration::MAX_PROVEN_POINTS;
 use crate::math::Vec3;
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 use crate::mpr::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, make_result, rounding};
 
-/// Follows the ray along unit `dir` to the boundary of D. Requires the origin in D, which is not tested. Returns the
+/// Follows the ray along unit `dir` to the boundary of D, in at most [`MAX_PROVEN_POINTS`] iterations. Requires the origin in D, which is not tested. Returns the
 /// result with its lower bound, and the last portal if there was one.
 ///
 /// # Errors
@@ -28,7 +29,7 @@ pub fn along<A: SupportMap, B: SupportMap>(
     dir: &Vec3,
     settings: &Settings,
 ) -> Result<(Penetration, Option<Portal>), Stop> {
-    let mut budget = settings.max_iterations;
+    let budget = settings.max_iterations.min(MAX_PROVEN_POINTS);
     let first = SupportPlane::of(md, *dir)?;
     let mut search = RaySearch {
         md,
@@ -39,7 +40,6 @@ pub fn along<A: SupportMap, B: SupportMap>(
         best: first,
     };
     let end = search.follow(&first)?;
-    budget = search.budget;
     let (portal, plane) = match end {
         RayEnd::Converged(portal, plane) => (Some(portal), plane),
         RayEnd::Limit(portal) => (portal, first),
@@ -56,13 +56,14 @@ pub fn along<A: SupportMap, B: SupportMap>(
     let depth_lower = lower.max(0.0).min(depth);
     // The smallest effective tolerance: the rounding error for a portal perpendicular to the ray.
     let floor = FLOOR_ROUNDINGS * rounding(plane.point.magnitude());
+    let status = Status::of_early_end(search.budget, settings.max_iterations, MAX_PROVEN_POINTS)
+        .unless(depth - depth_lower <= settings.tolerance.max(floor));
     let hit = Penetration {
         depth,
         depth_lower,
         dir: *dir,
-        iterations: settings.max_iterations - budget,
-        // Negated for NaN.
-        limit: !(depth - depth_lower <= settings.tolerance.max(floor)),
+        iterations: budget - search.budget,
+        status,
         ..make_result(&plane, portal.as_ref())
     };
     Ok((hit, portal))
@@ -117,15 +118,16 @@ mod tests {
                 let (hit, _) = along(&md, &d, &settings).expect("the origin is inside");
                 let slack = 100.0 * EPSILON;
                 assert!(hit.depth >= exact - slack && hit.depth_lower <= exact + slack);
-                assert!(!hit.limit && hit.depth - hit.depth_lower <= 2e-4);
+                assert_eq!(hit.status, Status::Converged);
+                assert!(hit.depth - hit.depth_lower <= 2e-4);
             }
         }
     }
 
-    /// Nearly coincident cylinders, along directions nearly perpendicular to the axis, at tolerance 0: `limit` is set
-    /// if the bounds have not met, and the depth is that of the support plane of `normal`.
+    /// Nearly coincident cylinders, along directions nearly perpendicular to the axis, at tolerance 0: the
+    /// status is not converged if the bounds have not met, and the depth is that of the support plane of `normal`.
     #[test]
-    fn unmet_bounds_set_limit() {
+    fn unmet_bounds_are_not_converged() {
         let mut r = Random::new(2);
         let settings = Settings {
             tolerance: 0.0,
@@ -150,8 +152,9 @@ mod tests {
             let Ok((hit, _)) = along(&md, &d, &settings) else {
                 panic!("the centers coincide");
             };
-            closed += u32::from(!hit.limit);
-            assert!(hit.limit || hit.depth - hit.depth_lower <= 256.0 * EPSILON);
+            let is_converged = hit.status == Status::Converged;
+            closed += u32::from(is_converged);
+            assert!(!is_converged || hit.depth - hit.depth_lower <= 256.0 * EPSILON);
             let h = hit.normal.dot(&md.support(&hit.normal).unwrap().v) / hit.normal.dot(&d);
             assert!((h - hit.depth).abs() <= 64.0 * EPSILON);
         }

@@ -25,13 +25,13 @@
 //! earlier support plane is lower than the last one, in another valley (see [`crate::mpr::local`]), the search
 //! continues there.
 //!
-//! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `limit`: the iterations
-//! were used up before a local minimum was found. This is the method on support calls only; the local search of this
-//! library, on known vertices, is [`crate::mpr::local`].
+//! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `status`: not
+//! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
+//! method on support calls only; the local search of this library, on known vertices, is [`crate::mpr::local`].
 
-use crate::contact::{Penetration, Settings};
+use crate::contact::{Penetration, Settings, Status};
 use crate::gjk::barycentric;
-use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
+use crate::math::{self, EPSILON, ITERATION_CAP, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::query::Stop;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 
@@ -71,12 +71,13 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let ended = run_algorithm_3(&mut search, ray, on_new_ray)?;
     Ok(Penetration {
         iterations: settings.max_iterations - search.budget,
-        limit: ended.is_none(),
+        status: Status::of_early_end(search.budget, settings.max_iterations, ITERATION_CAP)
+            .unless(ended.is_some()),
         ..ended.unwrap_or_else(|| make_result(&search.best, None))
     })
 }
 
-/// Runs the loop of Algorithm 3. Returns `None` if the iterations are used up.
+/// Runs the loop of Algorithm 3. Returns `None` if the iterations are used up, or rounding ends a ray.
 fn run_algorithm_3<A: SupportMap, B: SupportMap>(
     search: &mut RaySearch<'_, A, B>,
     mut ray: SupportPlane,
@@ -287,7 +288,7 @@ pub enum RayEnd {
     Vertex,
     /// The least support value is 0 within rounding.
     Touch,
-    /// The iterations are used up. The last portal, if there was one.
+    /// The iterations are used up, or rounding prevents a refinement. The last portal, if there was one.
     Limit(Option<Portal>),
 }
 
@@ -498,7 +499,7 @@ mod tests {
         switched: impl FnMut(f64),
     ) -> Penetration {
         let hit = penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap();
-        assert!(!hit.limit);
+        assert_eq!(hit.status, Status::Converged);
         hit
     }
 
@@ -701,7 +702,7 @@ mod tests {
         }
     }
 
-    /// Checks that the result is sound, and `limit` set, for every iteration limit.
+    /// Checks that the result is sound, and has the status, for every iteration limit.
     #[test]
     fn the_iteration_limit_is_reported() {
         let mut r = Random::new(6);
@@ -714,7 +715,8 @@ mod tests {
             };
             let start = r.direction();
             let hit = penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap();
-            assert!(hit.limit && hit.iterations <= max_iterations);
+            assert_eq!(hit.status, Status::IterationLimit);
+            assert!(hit.iterations <= max_iterations);
             let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
             assert!((h - hit.depth).abs() <= 8.0 * EPSILON);
             let apart = (hit.point1 - hit.point2).dot(&hit.dir);
@@ -923,7 +925,7 @@ mod planar_tests {
     ) -> Penetration {
         let hit = penetration(md, m, start, &SETTINGS).unwrap();
         let ulps = 100.0 * EPSILON;
-        assert!(!hit.limit);
+        assert_eq!(hit.status, Status::Converged);
         assert!(hit.dir.dot(m).abs() < ulps, "leaves the plane");
         assert!((hit.dir.norm() - 1.0).abs() < ulps);
         // The depth is sound, and the witness points are on the two support planes.
@@ -1039,7 +1041,7 @@ mod planar_tests {
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
                 // A local minimum on the far side of the other square: the overlap is not proven here.
-                Ok(hit) => assert!(!hit.limit && hit.dir.dot(&by) < 0.0),
+                Ok(hit) => assert!(hit.status == Status::Converged && hit.dir.dot(&by) < 0.0),
                 other => panic!("{other:?}"),
             }
         }

@@ -33,7 +33,8 @@
 //!
 //! Outputs. [`Status::Converged`]: the overlap is proven, `dir` is a local minimum of the support function, and the
 //! witness points are in their bodies, `depth` apart along `dir`. Any other status: `depth` and `dir` are sound if the
-//! objects overlap, which is not proven: use the global query.
+//! objects overlap, which is not proven: use the global query. [`Status::InconsistentSupport`]: also if a center is
+//! outside its object.
 //!
 //! The file is longer than 400 lines: a walk is one loop, and its tests of a face share the walk's state.
 
@@ -210,7 +211,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     start: &Vec3,
     is_remembered: bool,
     settings: &Settings,
-) -> Result<(Penetration, Status), Stop> {
+) -> Result<Penetration, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
     let mut walk = Walk {
         interior: query.interior.unwrap_or_default(),
@@ -223,27 +224,28 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         sphere_failures: 0,
         newton_failures: 0,
     };
-    let (minimum, mut status) = match walk.run(start, is_remembered) {
+    let (minimum, status) = match walk.run(start, is_remembered) {
         Ok(minimum) => (minimum, Status::Converged),
         Err(WalkEnd::Stop(stop)) => return Err(stop),
         Err(WalkEnd::Status(status)) => (walk.upper_bound(), status),
     };
     let [point1, point2] = minimum.points;
-    let hit = Penetration {
+    let mut hit = Penetration {
         depth: minimum.depth,
         dir: minimum.dir,
         normal: minimum.dir,
         point1,
         point2,
         iterations: walk.iterations,
+        status,
         ..Penetration::default()
     };
     // A face and its support plane differ by the rounding of both.
     let tolerance = walk.tolerance() + walk.query.scale.height_eps();
     if status == Status::Converged && !hit.has_sound_witnesses(tolerance) {
-        status = Status::Rounding;
+        hit.status = Status::Rounding;
     }
-    Ok((hit, status))
+    Ok(hit)
 }
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
@@ -691,7 +693,7 @@ mod tests {
         max_iterations: 1000,
     };
 
-    type Walked = Result<(Penetration, Status), Stop>;
+    type Walked = Result<Penetration, Stop>;
 
     /// Returns the hull of a ball about `at` and the point `at` + `tip`.
     fn drop(radius: f64, tip: Vec3, at: Vec3) -> impl Fn(&Vec3) -> Vec3 {
@@ -770,7 +772,7 @@ mod tests {
             let (found, count) = walk(&md, center, &start, &SETTINGS);
             assert!(count <= MAX_WALK_POINTS as u64 + 30, "{count}");
             match found {
-                Ok((hit, Status::Converged)) => {
+                Ok(hit) if hit.status == Status::Converged => {
                     converged += 1;
                     check(&md, &hit, r);
                 }
@@ -845,8 +847,8 @@ mod tests {
             };
             let center = (round / 8 % 2 == 0).then_some(-at);
             let (found, count) = walk(&md, center, &Vec3::x(), &settings);
-            let (hit, status) = found.unwrap();
-            assert_eq!(status, Status::Converged);
+            let hit = found.unwrap();
+            assert_eq!(hit.status, Status::Converged);
             assert!(count <= 15, "{round}: {count}");
             let ulps = 64.0 * EPSILON * radius;
             assert!((hit.depth - depth).abs() <= tolerance.max(ulps), "{hit:?}");
@@ -870,8 +872,8 @@ mod tests {
         let md = difference(hull(&points), |_: &Vec3| Vec3::zeros());
         for center in [None, Some(Vec3::new(-0.5, -1.0, 0.0))] {
             let (found, _) = walk(&md, center, &Vec3::y(), &SETTINGS);
-            let (hit, status) = found.unwrap();
-            assert_eq!(status, Status::Converged);
+            let hit = found.unwrap();
+            assert_eq!(hit.status, Status::Converged);
             let depth = (30.0_f64).to_radians().cos();
             assert!((hit.depth - depth).abs() <= 1e-6, "{hit:?}");
         }
@@ -886,9 +888,8 @@ mod tests {
             let tip = turn * Vec3::z() * r.within(0.8, 1.5);
             let md = difference(drop(0.5, tip, Vec3::zeros()), ball(tip * 0.3, 0.1));
             let start = (tip.normalize() + r.vector(0.2)).normalize();
-            if let (Ok((hit, Status::Converged)), _) =
-                walk(&md, Some(tip * -0.3), &start, &SETTINGS)
-            {
+            let hit = walk(&md, Some(tip * -0.3), &start, &SETTINGS).0.unwrap();
+            if hit.status == Status::Converged {
                 check(&md, &hit, &mut r);
             }
         }
@@ -909,8 +910,8 @@ mod tests {
                 ..SETTINGS
             };
             let center = (round % 2 == 0).then_some(-at);
-            if let (Ok((hit, Status::Converged)), _) = walk(&md, center, &r.direction(), &settings)
-            {
+            let hit = walk(&md, center, &r.direction(), &settings).0.unwrap();
+            if hit.status == Status::Converged {
                 converged += 1;
                 check(&md, &hit, &mut r);
             }
@@ -944,8 +945,8 @@ mod tests {
         for round in 0..20 {
             // The first start leads to that face.
             let start = [Vec3::x(), r.direction()][usize::from(round > 0)];
-            let (hit, status) = walk(&md, None, &start, &settings).0.unwrap();
-            if status != Status::Converged {
+            let hit = walk(&md, None, &start, &settings).0.unwrap();
+            if hit.status != Status::Converged {
                 continue;
             }
             converged += 1;
@@ -994,9 +995,9 @@ mod tests {
                 ..SETTINGS
             };
             let (found, _) = walk(&md, Some(Vec3::x() * -0.4), &r.direction(), &settings);
-            let (hit, status) = found.unwrap();
+            let hit = found.unwrap();
             assert!(hit.iterations <= max_iterations);
-            assert!(max_iterations > 0 || status == Status::IterationLimit);
+            assert!(max_iterations > 0 || hit.status == Status::IterationLimit);
             let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
             assert!((h - hit.depth).abs() <= 64.0 * EPSILON);
         }

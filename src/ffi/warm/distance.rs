@@ -11,7 +11,7 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, point_if};
 use super::state::{ccd_warm_t, with_state};
-use crate::contact::Settings;
+use crate::contact::{Settings, Status};
 use crate::gjk::signed_distance::{Distance, Wanted};
 use crate::math::{Real, lower_to_real};
 use crate::query::{Pair, warm_start::WarmStart};
@@ -103,10 +103,10 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         with_state(warm, |state| {
             let distance = pair.signed_distance(state, &wanted, minimum)?;
             *out = ccd_distance_t::new(&distance, want, pair.difference.supports());
-            Ok(match (distance.is_limited, distance.is_hit) {
-                (true, _) => CCD_LIMIT,
-                (false, true) => CCD_HIT,
-                (false, false) => CCD_MISS,
+            Ok(match (distance.status, distance.is_hit) {
+                (Status::Converged, true) => CCD_HIT,
+                (Status::Converged, false) => CCD_MISS,
+                _ => CCD_LIMIT,
             })
         })
     }

@@ -9,7 +9,7 @@ use super::super::callbacks::{Object, QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
-use crate::contact::{Penetration, Settings};
+use crate::contact::{Penetration, Settings, Status};
 use crate::math::{Real, Vec3, lower_to_real};
 use crate::minkowski::query::{Stop, if_overlapping};
 use crate::query::{Pair, warm_start::WarmStart};
@@ -113,7 +113,10 @@ pub(in crate::ffi) unsafe fn run_query(
                 return Ok(CCD_MISS);
             }
             write_hit(&hit, pair.difference.supports());
-            Ok(if hit.limit { CCD_LIMIT } else { CCD_HIT })
+            Ok(match hit.status {
+                Status::Converged => CCD_HIT,
+                _ => CCD_LIMIT,
+            })
         })
     }
 }
