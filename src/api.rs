@@ -10,7 +10,7 @@
 use core::fmt;
 
 use crate::contact;
-use crate::contact::Status;
+pub use crate::contact::Status;
 use crate::contact::manifold;
 use crate::contact::manifold_cache;
 use crate::ffi::arena::OwnedBuffers;
@@ -236,8 +236,8 @@ pub struct Penetration {
     pub normal: [Real; 3],
     /// Contact position, [`Want::pos`]: the center of pressure, an estimate of the centroid of the
     /// overlap volume, projected along `normal` to the plane midway between the two support planes.
-    /// Continuous in the pose. If `limit`, and in [`penetration_along`] and [`penetration_planar`],
-    /// the middle of the witness points.
+    /// Continuous in the pose. If `status` is not converged, and in [`penetration_along`] and
+    /// [`penetration_planar`], the middle of the witness points.
     pub pos: [Real; 3],
     /// Witness point of the first shape, [`Want::points`]: in the shape and on its support plane,
     /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).
@@ -249,9 +249,9 @@ pub struct Penetration {
     pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
-    /// True if the result is sound, but less exact than requested: `max_iterations`, the library's
-    /// limit of support points or rounding ended the search.
-    pub limit: bool,
+    /// Why the search ended; the result is less exact than requested unless this is
+    /// [`Status::Converged`].
+    pub status: Status,
 }
 
 /// Margins and largest distance of [`signed_distance`].
@@ -284,7 +284,7 @@ pub struct Distance {
     /// if the shapes overlap.
     pub distance: Real,
     /// Proven upper bound of the signed distance, metres; at most the tolerance above `distance`
-    /// unless `limit` is set or `distance` is above `max_distance`.
+    /// if `status` is converged, unless `distance` is above `max_distance`.
     pub distance_upper: Real,
     /// Unit, from the first shape to the second: moving the second along it increases the distance.
     pub normal: [Real; 3],
@@ -297,9 +297,9 @@ pub struct Distance {
     pub support_points: u64,
     /// Number of iterations of the solver.
     pub iterations: u64,
-    /// True if the bounds differ by more than the tolerance: `max_iterations`, the library's limit
-    /// of support points or rounding ended the search.
-    pub limit: bool,
+    /// Why the search ended; the bounds may differ by more than the tolerance, and the overlap may be
+    /// undecided (`distance < 0 < distance_upper`), unless this is [`Status::Converged`].
+    pub status: Status,
 }
 
 /// One point of a contact manifold.
@@ -402,7 +402,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: point_if(want.points, hit.point2),
         support_points: pair.difference.supports(),
         iterations: hit.iterations,
-        limit: hit.status != Status::Converged,
+        status: hit.status,
     }))
 }
 
@@ -428,7 +428,7 @@ query!(
     /// separate the two. The default call.
     ///
     /// The depth exceeds the least depth by at most the tolerance or 0.1 % of the depth, the larger of
-    /// the two; with [`Penetration::limit`] it is a sound upper bound.
+    /// the two; if [`Penetration::status`] is not converged, it is a sound upper bound.
     ///
     /// With a state, a pair that stays apart costs one support point, and an overlap fewer than a cold
     /// start. The overlap and `depth_lower` rely on the centers. Allocates nothing.
@@ -542,7 +542,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         point2: point_if_wanted(d.point2),
         support_points: pair.difference.supports(),
         iterations: d.iterations,
-        limit: d.status != Status::Converged,
+        status: d.status,
     })
 }
 
@@ -620,10 +620,10 @@ query!(
 
 query!(
     /// Computes the globally least depth with a certificate: `depth - depth_lower` is within the
-    /// tolerance unless [`Penetration::limit`] is set. Does not rely on the centers.
+    /// tolerance if [`Penetration::status`] is converged. Does not rely on the centers.
     ///
     /// Allocates, by C's calloc, only if the minimum is (nearly) not unique, as for coaxial cylinders
-    /// and concentric balls; the bounds may then not meet, and [`Penetration::limit`] is set.
+    /// and concentric balls; the bounds may then not meet, and [`Penetration::status`] says why.
     ///
     /// ```
     /// use ccd::{Real, Settings};

@@ -70,9 +70,9 @@ mod shapes;
 
 pub use api::{
     Check, Contact, Distance, DistanceOptions, Error, ManifoldCache, Penetration, Real, Settings,
-    Shape, Want, Warm, check, contacts, implementation, intersect, penetration, penetration_along,
-    penetration_incremental, penetration_local, penetration_planar, penetration_proven,
-    signed_distance,
+    Shape, Status, Want, Warm, check, contacts, implementation, intersect, penetration,
+    penetration_along, penetration_incremental, penetration_local, penetration_planar,
+    penetration_proven, signed_distance,
 };
 
 /// Internals for this package's own tests and benchmarks; they may change in any version.

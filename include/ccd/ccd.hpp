@@ -67,10 +67,20 @@ struct Vec3 {
 /** Result of a query. */
 enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
-    limit = CCD_LIMIT,         /**< overlap, less exact than requested, see CCD_LIMIT */
+    limit = CCD_LIMIT,         /**< overlap, less exact than requested; cause says why */
     miss = CCD_MISS,           /**< apart */
     no_memory = CCD_NO_MEMORY, /**< an allocation failed */
     bad_input = CCD_BAD_INPUT  /**< an argument or a point is invalid, see CCD_BAD_INPUT */
+};
+
+/** Why a search ended: the field status in C. Not converged if and only if the Status is limit; mpr_penetration and
+ * gjk_penetration, whose status is never limit, do not report it. Which fields are valid: see CCD_STATUS_. */
+enum class Cause : int {
+    converged = CCD_STATUS_CONVERGED,             /**< within the tolerance */
+    iteration_limit = CCD_STATUS_ITERATION_LIMIT, /**< Settings::max_iterations was reached */
+    support_limit = CCD_STATUS_SUPPORT_LIMIT,     /**< the library's own limit of support points was reached */
+    rounding = CCD_STATUS_ROUNDING,               /**< more support points would not help */
+    inconsistent_support = CCD_STATUS_INCONSISTENT_SUPPORT /**< two points of a support function contradict each other */
 };
 
 /** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */
@@ -99,6 +109,7 @@ struct Penetration {
     Vec3 point2;                  /**< witness point of the second shape */
     unsigned long support_points = 0; /**< half of the calls of both support functions */
     unsigned long iterations = 0;    /**< of the solver */
+    Cause cause = Cause::converged;  /**< why the search ended */
 
     /** Returns whether the shapes overlap. */
     explicit operator bool() const { return status == Status::hit || status == Status::limit; }
@@ -122,6 +133,7 @@ struct Distance {
     Vec3 point2;                  /**< of the second shape */
     unsigned long support_points = 0; /**< half of the calls of both support functions */
     unsigned long iterations = 0;    /**< of the solver */
+    Cause cause = Cause::converged;  /**< why the search ended */
 
     /** Returns whether the other fields are valid. */
     explicit operator bool() const { return status != Status::bad_input && status != Status::no_memory; }
@@ -257,6 +269,7 @@ inline Penetration penetration(int code, const ccd_penetration_t &out)
         p.point2 = out.point2;
         p.support_points = out.support_points;
         p.iterations = out.iterations;
+        p.cause = static_cast<Cause>(out.status);
     }
     return p;
 }
@@ -314,6 +327,7 @@ Distance signed_distance(const A &a, const B &b, const Settings &settings = {}, 
         d.point2 = out.point2;
         d.support_points = out.support_points;
         d.iterations = out.iterations;
+        d.cause = static_cast<Cause>(out.status);
     }
     return d;
 }

@@ -34,8 +34,8 @@
  * and never dereferenced. Queries are re-entrant and keep no data except the caller's state.
  *
  * All statements assume convex objects and support functions that return a farthest point. If points
- * of a support function contradict each other, a call may return CCD_LIMIT, and depth is sound only
- * for the points that it returned; ccdCheck finds such faults. */
+ * of a support function contradict each other, depth is sound only for the points that it returned,
+ * and status may be CCD_STATUS_INCONSISTENT_SUPPORT; ccdCheck finds such faults. */
 
 #ifndef __CCD_WARM_H__
 #define __CCD_WARM_H__
@@ -54,7 +54,10 @@ extern "C" {
  * code updates it for the next query.
  *
  * ccdIntersect returns 1 or 0, ccdContacts the number of contacts or CCD_BAD_INPUT, and calls
- * with MPR in their name libccd's codes. */
+ * with MPR in their name libccd's codes.
+ *
+ * The field status of a filled struct is the cause of the end of the search, a CCD_STATUS_ value.
+ * The code is CCD_LIMIT if and only if status is not CCD_STATUS_CONVERGED. */
 
 /**
  * The objects overlap by more than rounding.
@@ -62,9 +65,9 @@ extern "C" {
 #define CCD_HIT 0
 
 /**
- * The result is sound, but less exact than requested: max_iterations, the library's limit of
- * support points or rounding ended the search. All bounds hold. A penetration query has found an
- * overlap; for ccdSignedDistance the overlap may be undecided (distance < 0 < distance_upper).
+ * The result is less exact than requested; status says why, and which outputs are valid. A
+ * penetration query has found an overlap; for ccdSignedDistance the overlap may be undecided
+ * (distance < 0 < distance_upper).
  */
 #define CCD_LIMIT 1
 
@@ -83,6 +86,34 @@ extern "C" {
  * required, NaN, a negative length, a zero direction, an unknown flag, a point that is not finite.
  */
 #define CCD_BAD_INPUT (-3)
+
+/**
+ * The search ended within the tolerance. All outputs are valid.
+ */
+#define CCD_STATUS_CONVERGED 0
+
+/**
+ * max_iterations was reached. Depth, distances, bounds, directions and witness points are valid;
+ * their error is at most the gap between the bounds.
+ */
+#define CCD_STATUS_ITERATION_LIMIT 1
+
+/**
+ * The library's own limit of support points was reached. Valid as for CCD_STATUS_ITERATION_LIMIT.
+ */
+#define CCD_STATUS_SUPPORT_LIMIT 2
+
+/**
+ * Rounding ended the search: more support points would not help. Valid as for
+ * CCD_STATUS_ITERATION_LIMIT.
+ */
+#define CCD_STATUS_ROUNDING 3
+
+/**
+ * Two points of a support function contradict each other. depth is sound for the points that were
+ * returned; nothing is proven, and depth_lower is 0. ccdCheck finds such faults.
+ */
+#define CCD_STATUS_INCONSISTENT_SUPPORT 4
 
 
 /* States: carried from one query of a pair to the next. */
@@ -200,6 +231,10 @@ typedef struct ccd_penetration_t {
    * Number of iterations of the solver.
    */
   unsigned long iterations;
+  /**
+   * Why the search ended: a CCD_STATUS_ value.
+   */
+  int status;
 } ccd_penetration_t;
 
 /**
@@ -278,6 +313,10 @@ typedef struct ccd_distance_t {
    * Number of iterations of the solver.
    */
   unsigned long iterations;
+  /**
+   * Why the search ended: a CCD_STATUS_ value.
+   */
+  int status;
 } ccd_distance_t;
 
 /**

@@ -34,8 +34,8 @@
 //! and never dereferenced. Queries are re-entrant and keep no data except the caller's state.
 //!
 //! All statements assume convex objects and support functions that return a farthest point. If points
-//! of a support function contradict each other, a call may return CCD_LIMIT, and depth is sound only
-//! for the points that it returned; ccdCheck finds such faults.
+//! of a support function contradict each other, depth is sound only for the points that it returned,
+//! and status may be CCD_STATUS_INCONSISTENT_SUPPORT; ccdCheck finds such faults.
 
 use super::types::ccd_vec3_t;
 use crate::math::{Vec3, unit};

@@ -539,7 +539,8 @@ static void length_of_the_direction(const call_t *call)
         CHECK(penetration(call, &d, NULL, CCD_WANT_ALL, &out) == CCD_HIT, "%s: length 2^%d", call->name, i);
         /* without padding */
         CHECK(same_bits(&out, &unit, offsetof(ccd_penetration_t, point2) + sizeof out.point2)
-                  && out.support_points == unit.support_points && out.iterations == unit.iterations,
+                  && out.support_points == unit.support_points && out.iterations == unit.iterations
+                  && out.status == unit.status,
                   "%s: length 2^%d", call->name, i);
     }
 }

@@ -58,6 +58,7 @@ static inline int store_result(const call_t *entry, int code, const results_t *r
     const ccd_distance_t *d = &results->distance;
     const ccd_penetration_t *p = &results->penetration;
     if (entry->kind == KIND_DISTANCE) {
+        CHECK(code < CCD_MISS || (code == CCD_LIMIT) == (d->status != CCD_STATUS_CONVERGED), "code %d, status %d", code, d->status);
         if (code == CCD_LIMIT)
             code = d->distance < 0 ? CCD_HIT : CCD_MISS;
         if (code != CCD_HIT)
@@ -69,6 +70,7 @@ static inline int store_result(const call_t *entry, int code, const results_t *r
     } else if (entry->kind == KIND_PENETRATION || entry->kind == KIND_PENETRATION_ALONG) {
         if (code != CCD_HIT && code != CCD_LIMIT)
             return code;
+        CHECK((code == CCD_LIMIT) == (p->status != CCD_STATUS_CONVERGED), "%s: code %d, status %d", entry->name, code, p->status);
         out->depth = p->depth;
         out->dir = p->dir;
         out->normal = p->normal;

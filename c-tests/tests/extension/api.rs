@@ -8,7 +8,7 @@
 #![allow(unsafe_code, reason = "calls of the C interface")]
 
 use ccd::internals::ffi::*;
-use ccd::{Contact, DistanceOptions, Error, Penetration, Real, Settings, Shape, Want, Warm};
+use ccd::{Contact, DistanceOptions, Error, Penetration, Real, Settings, Shape, Status, Want, Warm};
 use std::ffi::{CStr, c_int, c_uint, c_ulong, c_void};
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -144,7 +144,8 @@ fn assert_same(rust: Found, (code, c): (c_int, ccd_penetration_t)) {
     let Some(hit) = rust.expect("valid input") else {
         return assert_eq!(code, CCD_MISS);
     };
-    assert_eq!(code, if hit.limit { CCD_LIMIT } else { CCD_HIT });
+    assert_eq!(code, if hit.status == Status::Converged { CCD_HIT } else { CCD_LIMIT });
+    assert_eq!(hit.status as c_int, c.status);
     assert_eq!((hit.depth, hit.depth_lower), (c.depth, c.depth_lower));
     assert_eq!((hit.dir, hit.normal), (c.dir.v, c.normal.v));
     assert_eq!([hit.pos, hit.point1, hit.point2], [c.pos.v, c.point1.v, c.point2.v]);
@@ -218,7 +219,7 @@ fn compare_intersect_and_distance(
     let (a, b): (Body, Body) = (a, b);
     assert_eq!(ccd::intersect(a, b, Some(warm)), Ok(yes));
     let d = ccd::signed_distance(a, b, settings, &options, Some(warm)).expect("valid input");
-    assert_eq!(d.limit, code == CCD_LIMIT);
+    assert_eq!((d.status != Status::Converged, d.status as c_int), (code == CCD_LIMIT, out.status));
     assert_eq!((d.distance, d.distance_upper), (out.distance, out.distance_upper));
     assert_eq!([d.normal, d.point1, d.point2], [out.normal.v, out.point1.v, out.point2.v]);
     assert_eq!(d.support_points as c_ulong, out.support_points);
@@ -338,6 +339,36 @@ fn errors_name_the_argument() {
     assert_eq!(error.to_string(), "the tolerance is negative or NaN");
 }
 
+#[test]
+fn status_says_why_a_search_ended() {
+    assert_eq!(
+        [
+            Status::Converged,
+            Status::IterationLimit,
+            Status::SupportLimit,
+            Status::Rounding,
+            Status::InconsistentSupport,
+        ]
+        .map(|status| status as c_int),
+        [
+            CCD_STATUS_CONVERGED,
+            CCD_STATUS_ITERATION_LIMIT,
+            CCD_STATUS_SUPPORT_LIMIT,
+            CCD_STATUS_ROUNDING,
+            CCD_STATUS_INCONSISTENT_SUPPORT,
+        ]
+    );
+    let (a, b) = (rounded([0.0, 0.0, 0.01], 1.0, [0.0; 3]), rounded([0.0; 3], 0.5, [0.0; 3]));
+    for (max_iterations, status) in [(10, Status::IterationLimit), (1000, Status::SupportLimit)] {
+        let settings = Settings { max_iterations, ..Settings::default() };
+        let hit = ccd::penetration_proven(&a as Body, &b as Body, &settings, None).expect("valid input");
+        assert_eq!(hit.expect("an overlap").status, status);
+        let options = DistanceOptions::default();
+        let d = ccd::signed_distance(&a as Body, &b as Body, &settings, &options, None);
+        assert_eq!(d.expect("valid input").status, status);
+    }
+}
+
 /// Checks that a panic of a shape leaves the query, and the state unchanged.
 #[test]
 fn panics_of_a_shape_leave_the_state_unchanged() {
@@ -452,7 +483,7 @@ fn c_call_that_allocates() {
     let b = rounded([0.0; 3], 0.5, [0.0; 3]);
     let ccd = in_c(&Settings::default(), true);
     let (code, out) = call_in_c(&CALLS[2], &a, &b, &ccd, null_mut(), CCD_WANT_ALL);
-    assert_eq!(code, CCD_LIMIT);
+    assert_eq!((code, out.status), (CCD_LIMIT, CCD_STATUS_SUPPORT_LIMIT));
     assert!((out.depth - 1.5).abs() < 1e-4 && out.support_points > 162);
 }
 

@@ -40,6 +40,11 @@ fn faults_of_support_functions_are_detected() {
 }
 
 #[test]
+fn status_says_why_a_search_ended() {
+    strict(program("tests/extension/status.c")).build().run(NO_ARGS);
+}
+
+#[test]
 fn results_from_every_kind_of_state() {
     strict(program("tests/extension/warm_states.c")).build().run([harness::rounds(400)]);
 }

@@ -82,7 +82,8 @@ static void check_same(const char *name, const ccd::Penetration &p, int code, co
         return;
     CHECK(p.depth == out.depth && p.depth_lower == out.depth_lower && same(p.dir, out.dir) &&
               same(p.normal, out.normal) && same(p.pos, out.pos) && same(p.point1, out.point1) &&
-              same(p.point2, out.point2) && p.support_points == out.support_points && p.iterations == out.iterations,
+              same(p.point2, out.point2) && p.support_points == out.support_points && p.iterations == out.iterations &&
+              int(p.cause) == out.status,
           "%s", name);
 }
 
@@ -134,7 +135,7 @@ static void results_are_those_of_c()
             CHECK(distance.distance == away.distance && distance.distance_upper == away.distance_upper &&
                       same(distance.normal, away.normal) && same(distance.point1, away.point1) &&
                       same(distance.point2, away.point2) && distance.support_points == away.support_points &&
-                      distance.iterations == away.iterations,
+                      distance.iterations == away.iterations && int(distance.cause) == away.status,
                   "distance");
 
             code = ccdMPRPenetrationWarm(o1, o2, &c, &c_warm, &depth, &d, &pos);
@@ -254,7 +255,11 @@ static void statuses_and_settings()
     CHECK(ccd::contacts(a, b, {1, 0, 0}, 0, none) == int(ccd::Status::bad_input), "no room");
     CHECK(ccd::mpr_penetration(a, b, {nan}) && ccd::gjk_penetration(a, b, {nan}), "libccd's calls take a default");
     CHECK(ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 4}).status == ccd::Status::bad_input, "an unknown flag");
-    CHECK(ccd::penetration_local(a, b, {CCD_REAL(1e-5), 0}).status == ccd::Status::limit, "no iterations");
+    const auto limited = ccd::penetration_local(a, b, {CCD_REAL(1e-5), 0});
+    CHECK(limited.status == ccd::Status::limit && limited.cause == ccd::Cause::iteration_limit, "no iterations");
+    CHECK(ccd::penetration_proven(a, a).cause == ccd::Cause::support_limit, "concentric");
+    CHECK(ccd::signed_distance(a, a).cause == ccd::Cause::support_limit, "concentric");
+    CHECK(ccd::penetration(a, b).cause == ccd::Cause::converged, "overlapping");
 
     /* Results that are not requested are zero. */
     const auto all = ccd::penetration(a, b), nothing = ccd::penetration(a, b, {CCD_REAL(1e-4), 1000, 0});

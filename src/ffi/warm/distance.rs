@@ -37,6 +37,8 @@ pub struct ccd_distance_t {
     pub support_points: c_ulong,
     /// Number of iterations of the solver.
     pub iterations: c_ulong,
+    /// Why the search ended: a CCD_STATUS_ value.
+    pub status: c_int,
 }
 
 impl ccd_distance_t {
@@ -49,6 +51,7 @@ impl ccd_distance_t {
             point2: point_if(want & CCD_WANT_POINTS, &distance.point2),
             support_points: supports as c_ulong,
             iterations: distance.iterations as c_ulong,
+            status: distance.status as c_int,
         }
     }
 }

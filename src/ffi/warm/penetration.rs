@@ -55,6 +55,8 @@ pub struct ccd_penetration_t {
     pub support_points: c_ulong,
     /// Number of iterations of the solver.
     pub iterations: c_ulong,
+    /// Why the search ended: a CCD_STATUS_ value.
+    pub status: c_int,
 }
 
 /// Returns the point where its flag is set, else zero.
@@ -77,6 +79,7 @@ impl ccd_penetration_t {
             point2: point_if(want & CCD_WANT_POINTS, &hit.point2),
             support_points: supports as c_ulong,
             iterations: hit.iterations as c_ulong,
+            status: hit.status as c_int,
         }
     }
 }
