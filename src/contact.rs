@@ -3,10 +3,9 @@
 
 //! Settings and results of the solvers, the contact position and the contact manifold.
 //!
-//! All guarantees assume convex objects and support functions that return a farthest point. If the global query
-//! notices that a support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and
-//! `depth` is the least support value of the points that the support functions returned when each direction was
-//! evaluated twice. Moving obj2 by it need not separate the objects.
+//! All guarantees assume convex objects and support functions that return a farthest point. If a query notices that a
+//! support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and `depth` is the least
+//! support value of the points that were returned. Moving obj2 by it need not separate the objects.
 
 pub mod center_of_pressure;
 pub mod face;

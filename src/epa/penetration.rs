@@ -16,9 +16,9 @@
 //!    by larger ones.
 //! 6. *Result*: depth and direction are those of the upper bound; lower bound and witness points are the polytope's.
 //!
-//! Departures. Steps 3 to 5 take known differences before callbacks. If a known difference is beyond an evaluated
-//! support plane, a callback has contradicted itself; if the difference of the centers is beyond one, a center is
-//! outside. The query then starts again, once, with every direction evaluated twice or without the centers.
+//! Departures. Steps 3 to 5 take known differences before callbacks. If the difference of the centers is beyond an
+//! evaluated support plane, a center is outside, and the query starts again, once, without the centers. If a known
+//! difference is beyond the plane of the result, a callback has contradicted itself.
 //!
 //! Outputs. All assume valid support functions, and centers that are in their objects.
 //!
@@ -29,10 +29,7 @@
 //! | witness points | always, each in its object; zero if they are not wanted |
 //!
 //! [`Status::Converged`]: depth − depth_lower is within the allowed gap. [`Status::InconsistentSupport`]: `depth_lower`
-//! is 0, and `depth` is sound only for the points that the support functions returned in the second start.
-//!
-//! Above 400 lines of code: the three starts of the polytope and the three sizes of its buffers share the solver's
-//! state.
+//! is 0, and `depth` is sound only for the points that the support functions returned.
 
 use crate::contact::{Penetration, Status};
 use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};

@@ -310,7 +310,9 @@ fn representable(dir: &Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{ball, corners, difference, hull};
+    use crate::shapes::{ball, difference};
+    #[cfg(not(feature = "single"))]
+    use crate::shapes::{corners, hull};
 
     #[test]
     fn samples_are_stored_with_the_upper_bound() {
