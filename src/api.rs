@@ -9,21 +9,21 @@
 
 use core::fmt;
 
-use crate::contact;
-pub use crate::contact::Status;
 use crate::contact::manifold;
 use crate::contact::manifold_cache;
 use crate::ffi::arena::OwnedBuffers;
 use crate::ffi::warm::NAME;
-use crate::gjk::signed_distance::Wanted;
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
-use crate::minkowski::query::{Stop, if_overlapping};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support_query::{Stop, if_overlapping};
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
+use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
-use crate::query::warm_start::WarmStart;
+use crate::query::signed_distance::Wanted;
+use crate::types;
+pub use crate::types::Status;
 
 /// A convex shape, given by its support function.
 ///
@@ -174,8 +174,8 @@ impl Settings {
     ///
     /// # Errors
     /// A tolerance that is negative or NaN.
-    fn solver_settings(&self) -> Result<contact::Settings, Error> {
-        Ok(contact::Settings {
+    fn solver_settings(&self) -> Result<types::Settings, Error> {
+        Ok(types::Settings {
             tolerance: validate_length(self.tolerance, "the tolerance is negative or NaN")?,
             max_iterations: ITERATION_CAP.min(self.max_iterations),
         })
@@ -379,15 +379,15 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     solve: impl FnOnce(
         &ShapePair<'_, A, B>,
         &mut WarmStart,
-        &contact::Settings,
+        &types::Settings,
         bool,
-        &mut contact::Penetration,
+        &mut types::Penetration,
     ) -> Result<(), Stop>,
 ) -> Result<Option<Penetration>, Error> {
     let solver = settings.solver_settings()?;
     let want = settings.want;
     let pair = make_pair(a, b, warm.is_some())?;
-    let mut hit = contact::Penetration::default();
+    let mut hit = types::Penetration::default();
     let found = with_state(warm, |state| {
         if_overlapping(solve(&pair, state, &solver, want.pos, &mut hit))
     })?;

@@ -9,9 +9,7 @@
 //! | [`penetration`] | the driver; its head lists the steps of the global query |
 //! | [`expand`] | the loop that expands the polytope |
 //! | [`polytope`] | the polytope: insertion of points, closest face, error bound; no support calls |
-//! | [`plane`] | planes and tetrahedra; no support calls |
 
 pub mod expand;
 pub mod penetration;
-pub mod plane;
 pub mod polytope;

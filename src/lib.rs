@@ -59,14 +59,21 @@ mod api;
 mod contact;
 mod epa;
 mod ffi;
+mod geometry;
 mod gjk;
+#[cfg(test)]
+#[path = "../c-tests/harness/ladder.rs"]
+mod ladder;
+mod local;
 mod math;
 mod minkowski;
-mod mpr;
+mod paper;
+mod portal;
 mod query;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
+mod types;
 
 pub use api::{
     Check, Contact, Distance, DistanceOptions, Error, ManifoldCache, Penetration, Real, Settings,
@@ -78,11 +85,11 @@ pub use api::{
 /// Internals for this package's own tests and benchmarks; they may change in any version.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::contact::Settings;
     pub use crate::math::Vec3;
     pub use crate::minkowski::support::MinkowskiDifference;
-    pub use crate::mpr::gao::Until;
-    pub use crate::mpr::gao::penetration as incremental;
+    pub use crate::paper::gao::Until;
+    pub use crate::paper::gao::penetration as incremental;
+    pub use crate::types::Settings;
 
     /// The exported C functions.
     pub mod ffi {

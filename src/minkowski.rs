@@ -15,15 +15,19 @@
 //! | [`support`] | support functions, D, support points |
 //! | [`vertex_set`] | the known vertices and the support function of their differences |
 //! | [`general_position`] | the tilt of the directions that are evaluated |
-//! | [`query`] | evaluation, upper bound, separating-axis test |
+//! | [`support_query`] | evaluation, upper bound, separating-axis test |
 //! | [`tolerance`] | effective tolerance, contact eps, rounding |
-//! | [`round_fit`] | sphere fits, which choose the directions to evaluate |
+//! | [`sphere_fit`] | sphere fits, which choose the directions to evaluate |
+//! | [`separating_axis`] | the axis test for pairs that stay separated |
+//! | [`warm_start`] | the state of a pair from one query to the next |
 //! | [`validate`] | tests of a support function and a center |
 
 pub mod general_position;
-pub mod query;
-pub mod round_fit;
+pub mod separating_axis;
+pub mod sphere_fit;
 pub mod support;
+pub mod support_query;
 pub mod tolerance;
 pub mod validate;
 pub mod vertex_set;
+pub mod warm_start;

@@ -2,47 +2,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The queries of a pair, and the steps that the penetration queries share. (The intersection test is in
-//! [`crate::gjk::intersect`], the signed distance in [`crate::gjk::signed_distance`].)
+//! [`crate::gjk::intersect`], the signed distance in [`crate::query::signed_distance`].)
 //!
 //! 1. *Separating axis*: evaluate the separating axis of the last query. If it still separates, the query
 //!    ends after one support point.
 //! 2. *Solver*: run it from the warm start state, else from the difference of the centers, else from the
 //!    caller's first direction.
 //! 3. *Overlap*: a local minimum of the support function can be positive though the objects are separated,
-//!    e.g. for a thin plate with the object on its far side. Therefore the overlap is proven separately: the
-//!    origin must lie in a tetrahedron of points of D ([`contains_origin`]), known ones first, queried ones
-//!    if needed. The global search proves its overlaps itself.
+//!    e.g. for a thin plate with the object on its far side. Therefore the solvers of local minima prove the overlap
+//!    separately ([`contains_origin`]); the certificate of the global minimum implies it.
 //! 4. *Contact position*: compute the [`center_of_pressure`], or take the middle of the witness points.
 //! 5. *Warm start state*: store it in the [`WarmStart`], if the caller keeps one.
 //!
-//! Outputs of an overlap, if `status` is [`Status::Converged`]; "else": if it is not.
-//!
-//! | query | `depth` | `depth_lower` | `pos` |
-//! |---|---|---|---|
-//! | default | global minimum within max(tolerance, 0.1 %); else an upper bound | proven if the centers lie in their objects | center of pressure; else the middle of the witness points |
-//! | proven | global minimum within the tolerance; else an upper bound | proven | as default |
-//! | local | local minimum; else an upper bound | 0; without centers, after a fallback to the global search, proven | as default |
-//! | incremental | local minimum; else an upper bound | 0 | as default; in a plane the middle of the witness points |
-//! | directional | depth along the direction; else an upper bound | along the direction; proven if the centers lie in their objects | the middle of the witness points |
-//!
-//! All rows assume valid support functions ([`crate::contact`]).
+//! `include/README.md` has the outputs of each query. All assume valid support functions ([`crate::types`]).
 
-pub mod warm_start;
+pub mod signed_distance;
 
 use crate::contact::center_of_pressure::center_of_pressure;
-use crate::contact::{Penetration, Settings, Status};
 use crate::epa::penetration::{Arena, EpaRequest, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
-use crate::gjk::signed_distance::{Distance, Wanted, signed_distance};
+use crate::local;
 use crate::math::{Vec3, larger, unit};
-use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::mpr::gao::{self, Until};
-use crate::mpr::{directional, local};
-use warm_start::{WarmKind, WarmStart};
+use crate::minkowski::warm_start::{WarmKind, WarmStart};
+use crate::query::signed_distance::{Distance, Wanted, signed_distance};
+use crate::types::{Penetration, Settings, Status};
 
 /// The input of a query: two objects, their centers, and the first direction.
 pub struct Pair<A, B> {
@@ -62,7 +50,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Evaluates the separating axis of the last query and, if it does not separate, runs `solve`. Stores the
     /// separating axis found by either.
     #[inline(always)]
-    fn with_separating_axis<R>(
+    pub fn with_separating_axis<R>(
         &self,
         state: &mut WarmStart,
         solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
@@ -99,7 +87,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// # Errors
     /// [`Stop::Separated`]: a queried direction separates. [`Fault::NonFinite`].
     #[inline(never)]
-    fn prove_overlap(
+    pub fn prove_overlap(
         &self,
         hit: &mut Penetration,
         set: &mut VertexSet<CAPACITY>,
@@ -138,7 +126,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// Returns the state with the direction of the difference of the centers, if both are given.
-    fn with_centers(&self, mut state: WarmStart) -> WarmStart {
+    pub fn with_centers(&self, mut state: WarmStart) -> WarmStart {
         if let Some(center) = &self.centers {
             state.set_center_direction(&center.v);
         }
@@ -190,7 +178,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         )
     }
 
-    /// Finds a local minimum of the depth by the local search ([`crate::mpr::local`]). If that ends without one,
+    /// Finds a local minimum of the depth by the local search ([`crate::local`]). If that ends without one,
     /// runs the global search from the direction of the upper bound.
     pub fn local(
         &self,
@@ -286,33 +274,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             };
         }
         Ok(is_minimum)
-    }
-
-    /// Finds a local minimum of the depth by W. Gao's method with the shortcut (Algorithms 4 and 5), from the
-    /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
-    /// perpendicular to it are searched.
-    pub fn incremental(
-        &self,
-        plane: Option<Vec3>,
-        state: &mut WarmStart,
-        settings: &Settings,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.with_separating_axis(state, |state| {
-            let start = state.direction().unwrap_or_else(|| self.cold_start());
-            let until = Until::Shortcut;
-            *hit = gao::penetration(&self.difference, start, plane, until, settings, |_| ())?;
-            let mut set = VertexSet::EMPTY;
-            self.prove_overlap(hit, &mut set, settings, plane.is_some())?;
-            *state = self.with_centers(WarmStart::towards(hit.normal));
-            hit.pos = if wants_pos && hit.status == Status::Converged && plane.is_none() {
-                self.contact_position(&set, hit, settings.tolerance)?
-            } else {
-                hit.middle()
-            };
-            Ok(())
-        })
     }
 
     /// Finds the global minimum of the depth within the larger of the tolerance and 0.1 % of it, with at most
@@ -416,35 +377,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Returns the center of pressure of a hit. `set`: the known vertices of its search.
     #[inline(always)]
-    fn contact_position<const N: usize>(
+    pub fn contact_position<const N: usize>(
         &self,
         set: &VertexSet<N>,
         hit: &Penetration,
         tolerance: f64,
     ) -> Result<Vec3, Fault> {
         center_of_pressure(&self.difference, set, hit, self.centers.as_ref(), tolerance)
-    }
-
-    /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
-    pub fn along(
-        &self,
-        dir: Vec3,
-        state: &mut WarmStart,
-        settings: &Settings,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.with_separating_axis(state, |state| {
-            let (found, portal) = directional::along(&self.difference, &dir, settings)?;
-            *hit = found;
-            let mut set = VertexSet::EMPTY;
-            for plane in portal.iter().flat_map(|p| &p.planes) {
-                set.push(&plane.normal, &plane.point);
-            }
-            self.prove_overlap(hit, &mut set, settings, false)?;
-            *state = self.with_centers(WarmStart::towards(hit.normal));
-            hit.pos = hit.middle();
-            Ok(())
-        })
     }
 }
 

@@ -28,10 +28,10 @@
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
 //! the whole query; here only the support function is evaluated along tilted normals.
 
-use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
-use crate::contact::polygon::{Polygon, Vec2, offset};
+use crate::geometry::fixed_vec::FixedVec;
+use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
 use crate::minkowski::support::{Fault, SupportMap};
 use core::mem::swap;

@@ -30,7 +30,7 @@
 //! contacts.
 
 use crate::contact::frame::ContactFrame;
-use crate::contact::polygon::{Vec2, offset};
+use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;

@@ -7,7 +7,7 @@
 //! normal or to its opposite, whichever is closer (Rodrigues' rotation formula). So they rotate no faster than the
 //! normal while POLE · normal keeps its sign, and are the same for the swapped objects.
 
-use crate::contact::polygon::Vec2;
+use crate::geometry::polygon::Vec2;
 use crate::math::{POLE, Vec3};
 use crate::minkowski::support::Fault;
 

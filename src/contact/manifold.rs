@@ -15,10 +15,10 @@
 //!    instead if they span at least nine tenths of that area.
 
 use crate::contact::face::{Face, MAX_CORNERS, faces};
-use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
-use crate::contact::polygon::{Polygon, Vec2, offset};
+use crate::geometry::fixed_vec::FixedVec;
+use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 

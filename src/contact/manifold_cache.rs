@@ -14,10 +14,10 @@
 //! Valid for the swapped pair too: faces are stored by the orientation of the frame, not by object.
 
 use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_DIRECTIONS, outward_tilt};
-use crate::contact::fixed_vec::FixedVec;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold::MAX_CONTACTS;
-use crate::contact::polygon::{Polygon, Vec2, offset};
+use crate::geometry::fixed_vec::FixedVec;
+use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger};
 use nalgebra::UnitComplex;
 

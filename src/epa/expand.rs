@@ -26,16 +26,16 @@
 //! | [`ExpandEnd::Converged`], [`ExpandEnd::SupportLimit`], [`ExpandEnd::IterationLimit`] | always |
 //! | [`ExpandEnd::Rounding`], [`ExpandEnd::NoRoom`] | if the distance of the closest face is not negative |
 
-use crate::contact::Settings;
 use crate::epa::polytope::EpaPolytope;
-use crate::gjk::barycentric::triangle;
+use crate::geometry::barycentric::triangle;
 use crate::math::{Vec3, lesser};
-use crate::minkowski::query::{Stop, SupportQuery};
-use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
+use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
+use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::is_shallow;
+use crate::portal::is_shallow;
+use crate::types::Settings;
 
 /// The fraction of the gap between the closest face and the upper bound that a known difference must close to
 /// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of

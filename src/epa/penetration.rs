@@ -7,7 +7,7 @@
 //!    `first_dir`). Most queries of separated objects end here.
 //! 2. *Interior point*: the difference of the centers if they are given; else the middle of the
 //!    support points along the ray and opposite to it, which is always in D.
-//! 3. *Portal*: discovery and refinement ([`crate::mpr::portal`]).
+//! 3. *Portal*: discovery and refinement ([`crate::portal`]).
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
@@ -31,19 +31,19 @@
 //! [`Status::Converged`]: depth − depth_lower is within the allowed gap. [`Status::InconsistentSupport`]: `depth_lower`
 //! is 0, and `depth` is sound only for the points that the support functions returned.
 
-use crate::contact::{Penetration, Status};
 use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};
-use crate::epa::plane::{PLANE_ERROR_ULPS, Tetrahedron, base_distance};
 use crate::epa::polytope::EpaPolytope;
-use crate::gjk::barycentric;
+use crate::geometry::barycentric;
+use crate::geometry::plane::{PLANE_ERROR_ULPS, Tetrahedron, base_distance};
 use crate::gjk::intersect::{CAPACITY, contains_origin};
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
-use crate::minkowski::query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
+use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::mpr::portal::{discover, refine};
-use crate::query::warm_start::{WarmKind, WarmStart};
+use crate::minkowski::warm_start::{WarmKind, WarmStart};
+use crate::portal::{discover, refine};
+use crate::types::{Penetration, Status};
 
 /// The limit of support points of a default query, up to the end of its polytope.
 pub const MAX_DEFAULT_POINTS: u64 = 160;
@@ -52,7 +52,7 @@ pub const MAX_DEFAULT_POINTS: u64 = 160;
 /// No query is to take more than 400 support points in all. Derived: 400 − 80. Measured (`cargo run --release --example
 /// campaigns -- wide`): up to 80 more, on nearly coincident bodies, are evaluated beyond this limit, for starts of the
 /// polytope that do not contain the origin yet and in the local search that follows
-/// ([`MAX_WALK_POINTS`](crate::mpr::local::MAX_WALK_POINTS)). Queries without a polytope have
+/// ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). Queries without a polytope have
 /// [`ITERATION_CAP`](crate::math::ITERATION_CAP).
 pub const MAX_PROVEN_POINTS: u64 = 320;
 

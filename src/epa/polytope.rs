@@ -53,7 +53,7 @@
 //!
 //! Above 400 lines of code: insertion, repairs and error bound share the arrays and the invariant.
 
-use crate::epa::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
+use crate::geometry::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
 use crate::math::{Vec3, larger, lesser, normal};
 
 /// The mark of the bottom of the stack of half-edges in [`EpaPolytope::walk_visible`].

@@ -6,10 +6,10 @@
 use core::ffi::{c_ulong, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
-use crate::contact::Settings;
 use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::query::Pair;
+use crate::types::Settings;
 
 /// An object whose support function is a C callback.
 #[derive(Clone, Copy)]

@@ -11,8 +11,8 @@ use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
 use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_code, write_outputs};
 use super::warm::penetration::run_query;
-use crate::contact::Penetration;
 use crate::math::Real;
+use crate::types::Penetration;
 
 /// Reports whether the objects overlap. Starts from the centers, which must lie in their objects.
 ///

@@ -12,8 +12,9 @@ use super::callbacks::{QueryArgs, QueryKind};
 use super::types::ccd_t;
 use super::warm::penetration::{ccd_penetration_t, fill};
 use super::warm::state::ccd_warm_t;
-use crate::contact::Settings;
-use crate::query::{Pair, warm_start::WarmStart};
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
+use crate::types::Settings;
 
 /// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
 /// shortcut of its Section III-C. The result is sound: depth is the least support value evaluated, and an overlap is

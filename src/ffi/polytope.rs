@@ -6,7 +6,7 @@
 //! inline functions of its own that unlink and free() the nodes allocated here.
 //!
 //! Therefore a node is one block of C's malloc, the links are ordered as libccd orders them, and
-//! `nearest` is updated by libccd's rule. [`crate::gjk::barycentric`] computes the distances.
+//! `nearest` is updated by libccd's rule. [`crate::geometry::barycentric`] computes the distances.
 
 use core::ffi::{c_char, c_int};
 use core::mem::offset_of;
@@ -17,7 +17,7 @@ use super::types::{
     ccd_pt_t, ccd_pt_vertex_t, ccd_support_t,
 };
 use super::{free, malloc};
-use crate::gjk::barycentric;
+use crate::geometry::barycentric;
 use crate::math::{Real, Vec3};
 
 /// Makes `pt` an empty polytope.

@@ -4,7 +4,7 @@
 //! Exports libccd's distances of points from segments and triangles, and its three data objects.
 
 use super::types::ccd_vec3_t;
-use crate::gjk::barycentric::{self, ClosestPoint};
+use crate::geometry::barycentric::{self, ClosestPoint};
 use crate::math::{Real, Vec3};
 
 /// Returns the squared distance, m², of point `p` from segment `ab`, and writes the closest point

@@ -19,17 +19,16 @@
 //! Outputs, valid for every [`Status`]: `lower` is a bound along `normal`; `upper` is the distance
 //! of the two points. `is_inside`: the origin is in the simplex, and the points coincide.
 
-use crate::contact::Status;
-use crate::gjk::barycentric;
 use crate::gjk::intersect::{CAPACITY, Enclosing};
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact};
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
-use crate::minkowski::query::SupportQuery;
-use crate::minkowski::round_fit::{MIN_GAIN, PREDICTION_REL_TOL, SphereFit};
-use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::sphere_fit::{MIN_GAIN, PREDICTION_REL_TOL, SphereFit};
+use crate::minkowski::support::{self, Fault, SupportMap};
+use crate::minkowski::support_query::SupportQuery;
 use crate::minkowski::tolerance::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::MAX_STEPS;
+use crate::portal::MAX_STEPS;
+use crate::types::Status;
 
 /// Largest tangent of the angle between a queried direction and the normal of the best plane. Measured on nine
 /// sets of pairs: 12 % more support points without the limit; insensitive from 0.5 to 0.8.
@@ -132,7 +131,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             return Enclosing { corners }.witnesses();
         }
         let corners = self.simplex.corners().map(point);
-        barycentric::witnesses(&self.simplex.weights(), corners.each_ref())
+        support::witnesses(&self.simplex.weights(), corners.each_ref())
     }
 
     /// Runs the search.

@@ -7,7 +7,7 @@
 //! 1. Query the first direction: most separated pairs end here.
 //! 2. The interior point is the difference of the centers; without centers, a point on the segment between
 //!    two opposite support points. Find a portal of its origin ray, and move the portal outwards until the
-//!    origin is on its inner side ([`crate::mpr::portal`]).
+//!    origin is on its inner side ([`crate::portal`]).
 //! 3. If no such portal is found (several vertices are equally far): move a simplex towards the origin until
 //!    the simplex contains it.
 //! 4. If the origin stays on the surface of the simplex within rounding (it is on an edge of known vertices,
@@ -22,14 +22,14 @@
 //! epsilon. `Ok`: D contains the origin, or (undecided) the origin is within rounding of the surface of D and no
 //! queried direction separates.
 
-use crate::gjk::barycentric;
+use crate::geometry::barycentric;
 use crate::gjk::simplex::{MAX_STALLS, Simplex, compact, make_room};
 use crate::math::{EPSILON, Vec3, larger, lesser, normal, unit};
-use crate::minkowski::query::{Stop, SupportQuery};
-use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
+use crate::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
@@ -62,7 +62,7 @@ impl Enclosing {
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         let corners = self.corners.each_ref();
         let origin = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
-        barycentric::witnesses(&origin.weights, corners)
+        support::witnesses(&origin.weights, corners)
     }
 }
 

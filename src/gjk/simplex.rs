@@ -353,8 +353,8 @@ pub fn compact<const N: usize>(set: &mut VertexSet<N>, corners: &mut [Vertex]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gjk::barycentric;
-    use crate::minkowski::query::SupportQuery;
+    use crate::geometry::barycentric;
+    use crate::minkowski::support_query::SupportQuery;
     use crate::shapes::Random;
 
     /// Tests corners in a plane with the origin, and close to each other.

@@ -24,7 +24,7 @@
 //! Exact callbacks take the same support points with and without (mean of `support_counts.csv`).
 //!
 //! Limits. A direction along ω gets no tilt. A direction that an earlier query has evaluated is in general position and is
-//! evaluated as it is, so that a pair at rest does not turn. The published method ([`crate::mpr::gao`]) evaluates its
+//! evaluated as it is, so that a pair at rest does not turn. The published method ([`crate::paper::gao`]) evaluates its
 //! directions as they are.
 
 use crate::math::{EPSILON, POLE, Vec3, lesser};

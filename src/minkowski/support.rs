@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Support functions, and the Minkowski difference D = obj1 − obj2 that every solver works on
-//! (W. Gao, 2023, Sec. II-A and II-B, see [`crate::mpr::gao`]).
+//! (W. Gao, 2023, Sec. II-A and II-B, see [`crate::paper::gao`]).
 
 use core::cell::Cell;
 
+use crate::geometry::barycentric;
 use crate::math::{Vec3, larger, max_abs};
 
 /// A convex object, given by its support function.
@@ -50,6 +51,16 @@ impl SupportPoint {
             v2: self.v2.lerp(&other.v2, t),
         }
     }
+}
+
+/// Returns the weighted means of the points of obj1 and of those of obj2. Their difference is the weighted mean
+/// of the points of D.
+#[inline]
+pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N]) -> (Vec3, Vec3) {
+    (
+        barycentric::mix(weights, points.map(|p| &p.v1)),
+        barycentric::mix(weights, points.map(|p| &p.v2)),
+    )
 }
 
 /// Cause of a query without a result.
@@ -116,5 +127,29 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
     #[inline]
     pub fn supports(&self) -> u64 {
         self.calls.get().div_ceil(2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::shapes::Random;
+
+    #[test]
+    fn witnesses_differ_by_the_point() {
+        let mut r = Random::new(33);
+        for _ in 0..1000 {
+            // Far from the world's origin.
+            let base = r.vector(1e3);
+            let points = [0; 3].map(|_| {
+                let (v1, v2) = (base + r.vector(1.0), base + r.vector(1.0));
+                SupportPoint { v: v1 - v2, v1, v2 }
+            });
+            let [a, b, c] = &points;
+            let found = barycentric::triangle(&Vec3::zeros(), &a.v, &b.v, &c.v);
+            let (p1, p2) = witnesses(&found.weights, [a, b, c]);
+            assert!((p1 - p2 - found.point).norm() <= 1e3 * 8.0 * EPSILON);
+        }
     }
 }

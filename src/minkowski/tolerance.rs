@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The tolerances of the solvers: the effective tolerance, the contact epsilon, rounding. (The published
-//! method, [`crate::mpr::gao`], and the contact faces, [`crate::contact::face`], have rounding terms of
+//! method, [`crate::paper::gao`], and the contact faces, [`crate::contact::face`], have rounding terms of
 //! their own.)
 //!
 //! All follow from two lengths. The *world extent* is the largest distance of a vertex from the world's

@@ -11,10 +11,11 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, point_if};
 use super::state::{ccd_warm_t, with_state};
-use crate::contact::{Settings, Status};
-use crate::gjk::signed_distance::{Distance, Wanted};
 use crate::math::{Real, lower_to_real};
-use crate::query::{Pair, warm_start::WarmStart};
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
+use crate::query::signed_distance::{Distance, Wanted};
+use crate::types::{Settings, Status};
 
 /// Result of ccdSignedDistance. A field that was not requested is zero.
 #[repr(C)]

@@ -8,8 +8,9 @@ use core::ffi::{c_int, c_void};
 use super::super::callbacks::{Object, QueryArgs, QueryKind};
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, with_state};
-use crate::minkowski::query::if_overlapping;
-use crate::query::{Pair, warm_start::WarmStart};
+use crate::minkowski::support_query::if_overlapping;
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
 
 /// Tests a pair for overlap with the caller's state. Returns 1 or 0.
 ///

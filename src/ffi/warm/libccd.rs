@@ -12,8 +12,8 @@ use super::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::intersect::intersect;
 use super::penetration::run_query;
 use super::state::ccd_warm_t;
-use crate::contact::Penetration;
 use crate::math::Real;
+use crate::types::Penetration;
 
 /// Converts a code of the extension to libccd's.
 pub(in crate::ffi) fn libccd_code(code: c_int) -> c_int {

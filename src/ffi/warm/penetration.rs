@@ -9,10 +9,11 @@ use super::super::callbacks::{Object, QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::state::{ccd_warm_t, with_state};
-use crate::contact::{Penetration, Settings, Status};
 use crate::math::{Real, Vec3, lower_to_real};
-use crate::minkowski::query::{Stop, if_overlapping};
-use crate::query::{Pair, warm_start::WarmStart};
+use crate::minkowski::support_query::{Stop, if_overlapping};
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
+use crate::types::{Penetration, Settings, Status};
 
 /// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
 /// May call one support function without the other.

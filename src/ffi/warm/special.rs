@@ -12,8 +12,9 @@ use super::codes::CCD_BAD_INPUT;
 use super::penetration::{ccd_penetration_t, fill};
 use super::state::ccd_warm_t;
 use super::unit_of;
-use crate::contact::Settings;
-use crate::query::{Pair, warm_start::WarmStart};
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
+use crate::types::Settings;
 
 /// Computes a local minimum of the penetration depth by a local search from the state's direction.
 /// Faster than ccdPenetration if that direction is roughly right; from a distant one it may find

@@ -8,7 +8,7 @@ use core::ffi::{c_int, c_uint};
 use super::super::types::ccd_vec3_t;
 use super::codes::{CCD_BAD_INPUT, CCD_NO_MEMORY};
 use crate::minkowski::support::Fault;
-use crate::query::warm_start::WarmStart;
+use crate::minkowski::warm_start::WarmStart;
 
 /// Number of reals in a ccd_warm_t.
 pub const CCD_WARM_REALS: usize = 6;

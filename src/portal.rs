@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Portal discovery and refinement on known vertices (G. Snethen, "XenoCollide", Game Programming
-//! Gems 7, 2008; W. Gao, 2023, Algorithm 1, see [`crate::mpr::gao`]).
+//! Gems 7, 2008; W. Gao, 2023, Algorithm 1, see [`crate::paper::gao`]).
 //!
 //! The origin ray runs from an interior point of D through the origin. A *portal* is a triangle of points of D that
 //! the ray crosses.
@@ -24,9 +24,9 @@
 //! direction is a separating axis; this is the separation test.
 
 use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
-use crate::minkowski::query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::round_fit::{DirectionSource, SphereFit, evaluate_beyond};
+use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
+use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::{GapLimit, KNOWN_LEVEL};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 

@@ -22,18 +22,17 @@
 //! takes no further support call. Tests are signs of triple products; none has an absolute epsilon. A support
 //! plane that excludes the origin ends the search: the objects are separated. The direction of a ray through its own
 //! support point is stationary, but may be a maximum or a saddle: the search perturbs it once and continues. If an
-//! earlier support plane is lower than the last one, in another valley (see [`crate::mpr::local`]), the search
+//! earlier support plane is lower than the last one, in another valley (see [`crate::local`]), the search
 //! continues there.
 //!
 //! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `status`: not
 //! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
-//! method on support calls only; the local search of this library, on known vertices, is [`crate::mpr::local`].
+//! method on support calls only; the local search of this library, on known vertices, is [`crate::local`].
 
-use crate::contact::{Penetration, Settings, Status};
-use crate::gjk::barycentric;
 use crate::math::{self, EPSILON, ITERATION_CAP, Vec3, larger, max_abs, perpendicular, unit};
-use crate::minkowski::query::Stop;
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support_query::Stop;
+use crate::types::{Penetration, Settings, Status};
 
 /// The perturbation of a stationary direction, as tangents along two perpendicular vectors: 6 degrees in all, small
 /// enough to stay in the valley and large enough to find a slope. The two have no simple ratio, so that no symmetry of
@@ -260,7 +259,7 @@ impl Portal {
         if !(sum > 0.0) {
             return (points[0].v1, points[0].v2);
         }
-        barycentric::witnesses(&weights.map(|t| t / sum), points)
+        support::witnesses(&weights.map(|t| t / sum), points)
     }
 }
 

@@ -7,16 +7,16 @@
 //! | [`WarmKind`] | `dir` | `depth` | `radius` |
 //! |---|---|---|---|
 //! | `Cold` | zero | 0 | 0 |
-//! | `Separated` | the separating axis | the target separation ([`crate::gjk::separating_axis`]) | sphere radii or 0 |
+//! | `Separated` | the separating axis | the target separation ([`crate::minkowski::separating_axis`]) | sphere radii or 0 |
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
 //! | `CurvedOverlap` | the direction of the upper bound | the depth | sphere radii or 0 |
 //!
 //! A radius is 0 unless a prediction of the sphere fits was confirmed. The state also holds the direction of
 //! the difference of the centers, rounded, by which a state of the swapped pair is recognised.
 
-use crate::gjk::separating_axis::SeparatingAxis;
 use crate::math::{EPSILON, Vec3, ZERO, unit};
 use crate::minkowski::general_position::start_direction;
+use crate::minkowski::separating_axis::SeparatingAxis;
 
 /// Result of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

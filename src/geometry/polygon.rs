@@ -4,7 +4,7 @@
 //! Convex polygons in a contact frame. x and y of a corner are its coordinates along the axes; z is its *drop*, the
 //! distance below the support plane, metres. Segments and points are polygons of two corners and of one.
 
-use crate::contact::fixed_vec::FixedVec;
+use crate::geometry::fixed_vec::FixedVec;
 use crate::math::{Vec3, larger, lesser};
 
 /// A vector along the two axes of a contact frame.

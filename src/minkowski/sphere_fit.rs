@@ -22,10 +22,10 @@
 //! Outputs. [`SphereFit::radius`]: a guess. A direction of [`SphereFit::predict`] or
 //! [`SphereFit::tilted_from_lowest`] must be evaluated; the support value decides.
 
-use crate::gjk::barycentric;
+use crate::geometry::barycentric;
 use crate::math::{Vec3, lesser, normalise_unscaled};
-use crate::minkowski::query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::support::SupportMap;
+use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The differences allowed between two samples of one sphere.

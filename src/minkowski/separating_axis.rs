@@ -19,8 +19,8 @@
 //! they are only a guess.
 
 use crate::math::{Vec3, larger, unit};
-use crate::minkowski::query::SupportQuery;
 use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::support_query::SupportQuery;
 
 /// Number of axes evaluated before the pair is queried as if it were new.
 const MAX_TRIES: u32 = 2;

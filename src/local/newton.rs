@@ -9,7 +9,7 @@
 //! 1. *Gradient*: the support point of the upper bound, less its component along the direction.
 //! 2. *Hessian*: from the two known support points with the closest directions for which D is smooth between them and
 //!    the support point of the upper bound. Smooth: the distances e and f of two support points below each other's
-//!    support planes ([`round_fit`](crate::minkowski::round_fit)) agree within [`SMOOTH_REL_TOL`].
+//!    support planes ([`sphere_fit`](crate::minkowski::sphere_fit)) agree within [`SMOOTH_REL_TOL`].
 //! 3. *Step*: to the minimum of the quadratic model; none if it has no minimum, or if the tangent of the step's angle
 //!    is larger than [`MAX_NEWTON_TAN`].
 //!
@@ -18,8 +18,8 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::math::{Vec3, normalise_unscaled, perpendicular};
-use crate::minkowski::query::SupportPlane;
-use crate::minkowski::round_fit::MIN_ANGLE2;
+use crate::minkowski::sphere_fit::MIN_ANGLE2;
+use crate::minkowski::support_query::SupportPlane;
 use crate::minkowski::vertex_set::VertexSet;
 
 /// The largest tangent of the angle of Newton's step, and of the angle between the directions of the upper bound and
@@ -136,7 +136,7 @@ fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::minkowski::query::SupportQuery;
+    use crate::minkowski::support_query::SupportQuery;
     use crate::shapes::{Random, Rotation, difference, ellipsoid};
 
     #[test]

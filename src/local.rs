@@ -4,7 +4,7 @@
 //! The local search: finds a local minimum of the penetration depth by a walk from portal to portal on the known
 //! vertices.
 //!
-//! Reference: W. Gao, 2023, Algorithm 4, see [`crate::mpr::gao`].
+//! Reference: W. Gao, 2023, Algorithm 4, see [`crate::paper::gao`].
 //!
 //! Terms. The *inner model* is the hull of the known differences ([`crate::minkowski`]). A *ray* starts at the origin
 //! of D. The *foot* of a face is the projection of the origin on its plane. The *valley* of a minimum is the set of
@@ -38,20 +38,22 @@
 //!
 //! The file is longer than 400 lines: a walk is one loop, and its tests of a face share the walk's state.
 
-use crate::contact::{Penetration, Settings, Status};
-use crate::epa::plane::Tetrahedron;
-use crate::gjk::barycentric;
+mod newton;
+
+use crate::geometry::barycentric;
+use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
+use crate::local::newton::newton_step;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
-use crate::minkowski::query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::round_fit::{
+use crate::minkowski::sphere_fit::{
     MAX_FAILED_PREDICTIONS, MIN_CORE_DISTANCE_REL, MIN_GAIN, PREDICTION_REL_TOL, SphereFit,
 };
-use crate::minkowski::support::{SupportMap, SupportPoint};
+use crate::minkowski::support::{self, SupportMap, SupportPoint};
+use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tolerance::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::mpr::newton::newton_step;
-use crate::mpr::portal::{MAX_STEPS, discover, replace_corner};
+use crate::portal::{MAX_STEPS, discover, replace_corner};
+use crate::types::{Penetration, Settings, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
 /// minimum.
@@ -627,7 +629,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let [a, b, c] = face.corners.each_ref().map(|v| v.w);
                 let weights = barycentric::triangle(&(dir * *depth), &a, &b, &c).weights;
                 let corners = face.corners.map(|v| self.set.point(v.pair));
-                let (point1, point2) = barycentric::witnesses(&weights, corners.each_ref());
+                let (point1, point2) = support::witnesses(&weights, corners.each_ref());
                 minimum.points = [point1, point2];
             }
             WalkStep::Fit(Model::Sphere) => {

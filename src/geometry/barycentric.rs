@@ -13,7 +13,6 @@
 //! computed from its weights, and candidates are compared by distance, not by weights.
 
 use crate::math::{Vec3, normal};
-use crate::minkowski::support::SupportPoint;
 
 /// The point of a simplex of `N` corners closest to a given point.
 #[derive(Clone, Copy, Debug)]
@@ -55,16 +54,6 @@ pub fn mix<const N: usize>(weights: &[f64; N], points: [&Vec3; N]) -> Vec3 {
         mixed += (points[i] - points[0]) * weights[i];
     }
     mixed
-}
-
-/// Returns the weighted means of the points of obj1 and of those of obj2. Their difference is the weighted mean
-/// of the points of D.
-#[inline]
-pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N]) -> (Vec3, Vec3) {
-    (
-        mix(weights, points.map(|p| &p.v1)),
-        mix(weights, points.map(|p| &p.v2)),
-    )
 }
 
 /// Returns the point of segment `ab` closest to `p`.
@@ -331,23 +320,6 @@ mod tests {
             for (x, y) in w.iter().zip(found.weights) {
                 assert!((x - y).abs() <= 200.0 * EPSILON / volume);
             }
-        }
-    }
-
-    #[test]
-    fn witnesses_differ_by_the_point() {
-        let mut r = Random::new(33);
-        for _ in 0..1000 {
-            // Far from the world's origin.
-            let base = r.vector(1e3);
-            let points = [0; 3].map(|_| {
-                let (v1, v2) = (base + r.vector(1.0), base + r.vector(1.0));
-                SupportPoint { v: v1 - v2, v1, v2 }
-            });
-            let [a, b, c] = &points;
-            let found = triangle(&Vec3::zeros(), &a.v, &b.v, &c.v);
-            let (p1, p2) = witnesses(&found.weights, [a, b, c]);
-            assert!((p1 - p2 - found.point).norm() <= 1e3 * 8.0 * EPSILON);
         }
     }
 

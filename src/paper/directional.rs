@@ -3,21 +3,21 @@
 
 //! The penetration depth along a direction.
 //!
-//! [`along`] follows the given ray to the boundary of D (W. Gao, 2023, Algorithm 1, see [`crate::mpr::gao`]). Upper
+//! [`along`] follows the given ray to the boundary of D (W. Gao, 2023, Algorithm 1, see [`crate::paper::gao`]). Upper
 //! bound: the first support plane on the ray. Lower bound: the intersection of the ray and the portal, which is
 //! inscribed in D, minus the rounding error; it is valid once the origin is known to be in D.
 //!
-//! Departures: those of [`crate::mpr::gao`]. The bounds are measured along the ray.
+//! Departures: those of [`crate::paper::gao`]. The bounds are measured along the ray.
 //!
 //! Outputs. `status`: converged if the bounds differ by at most the effective tolerance, whatever ended the search. The
 //! overlap is not proven here.
 
-use crate::contact::{Penetration, Settings, Status};
 use crate::epa::penetration::MAX_PROVEN_POINTS;
 use crate::math::Vec3;
-use crate::minkowski::query::Stop;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
-use crate::mpr::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, make_result, rounding};
+use crate::minkowski::support_query::Stop;
+use crate::paper::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, make_result, rounding};
+use crate::types::{Penetration, Settings, Status};
 
 /// Follows the ray along unit `dir` to the boundary of D, in at most [`MAX_PROVEN_POINTS`] iterations. Requires the origin in D, which is not tested. Returns the
 /// result with its lower bound, and the last portal if there was one.

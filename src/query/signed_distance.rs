@@ -16,13 +16,13 @@
 //! Outputs: both bounds are valid, whatever the status, except for [`Status::InconsistentSupport`]. The points lie on
 //! the surfaces of the objects with their margins.
 
-use crate::contact::{Penetration, Settings, Status};
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
-use crate::minkowski::query::{Stop, SupportQuery, if_overlapping};
-use crate::minkowski::round_fit::SphereFit;
+use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::query::warm_start::WarmStart;
+use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
+use crate::minkowski::warm_start::WarmStart;
+use crate::types::{Penetration, Settings, Status};
 
 /// The input of a query besides the objects.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The paper's method as published: W. Gao, "Efficient Incremental Penetration Depth Estimation between Convex
+//! Geometries", 2023, for comparison, and the query along a direction that is based on it.
+//!
+//! | file | contents |
+//! |---|---|
+//! | [`gao`] | Algorithms 1 and 3 to 5, on support calls only |
+//! | [`directional`] | the depth along a given direction |
+
+pub mod directional;
+pub mod gao;
+
+use crate::math::Vec3;
+use crate::minkowski::support::SupportMap;
+use crate::minkowski::support_query::Stop;
+use crate::minkowski::vertex_set::VertexSet;
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
+use crate::types::{Penetration, Settings, Status};
+use gao::Until;
+
+impl<A: SupportMap, B: SupportMap> Pair<A, B> {
+    /// Finds a local minimum of the depth by W. Gao's method with the shortcut (Algorithms 4 and 5), from the
+    /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
+    /// perpendicular to it are searched.
+    pub fn incremental(
+        &self,
+        plane: Option<Vec3>,
+        state: &mut WarmStart,
+        settings: &Settings,
+        wants_pos: bool,
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.with_separating_axis(state, |state| {
+            let start = state.direction().unwrap_or_else(|| self.cold_start());
+            let until = Until::Shortcut;
+            *hit = gao::penetration(&self.difference, start, plane, until, settings, |_| ())?;
+            let mut set = VertexSet::EMPTY;
+            self.prove_overlap(hit, &mut set, settings, plane.is_some())?;
+            *state = self.with_centers(WarmStart::towards(hit.normal));
+            hit.pos = if wants_pos && hit.status == Status::Converged && plane.is_none() {
+                self.contact_position(&set, hit, settings.tolerance)?
+            } else {
+                hit.middle()
+            };
+            Ok(())
+        })
+    }
+
+    /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
+    pub fn along(
+        &self,
+        dir: Vec3,
+        state: &mut WarmStart,
+        settings: &Settings,
+        hit: &mut Penetration,
+    ) -> Result<(), Stop> {
+        self.with_separating_axis(state, |state| {
+            let (found, portal) = directional::along(&self.difference, &dir, settings)?;
+            *hit = found;
+            let mut set = VertexSet::EMPTY;
+            for plane in portal.iter().flat_map(|p| &p.planes) {
+                set.push(&plane.normal, &plane.point);
+            }
+            self.prove_overlap(hit, &mut set, settings, false)?;
+            *state = self.with_centers(WarmStart::towards(hit.normal));
+            hit.pos = hit.middle();
+            Ok(())
+        })
+    }
+}

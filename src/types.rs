@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The settings and the result of a query.
+//!
+//! All guarantees assume convex objects and support functions that return a farthest point. If a query notices that a
+//! support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and `depth` is the least
+//! support value of the points that were returned. Moving obj2 by it need not separate the objects.
+
+use crate::math::Vec3;
+
+/// The tolerance and the limits of a query.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Largest error of the depth, metres; not negative and not NaN, but possibly infinite. Solvers clamp it
+    /// (`Scale::tolerance`).
+    pub tolerance: f64,
+    /// Limit on the iterations of a query, all stages together; at most `ITERATION_CAP`.
+    /// An iteration is a support point after the first tetrahedron or portal: one that expands a polytope, or that
+    /// refines or confirms a face in the local search. In `along`, `planar` and `incremental` it is a step of portal
+    /// discovery or refinement, or a change of the ray; in a distance any support point, and the depth of objects
+    /// that overlap is counted anew. Support points that decide whether the objects overlap are not limited, except
+    /// in a distance.
+    pub max_iterations: u64,
+}
+
+/// The cause of the end of a search, which tells which outputs are valid. The results are as exact as requested only
+/// for [`Status::Converged`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Status {
+    /// The search ended within the tolerance. All outputs are valid.
+    #[default]
+    Converged,
+    /// `max_iterations` was reached. Depth, directions, bounds and witness points are valid.
+    IterationLimit,
+    /// The library's own limit of support points was reached. Valid as for [`Status::IterationLimit`].
+    SupportLimit,
+    /// Rounding ended the search: more support points would not help. Valid as for [`Status::IterationLimit`].
+    Rounding,
+    /// Two points of a support function contradict each other. The depth is sound for the points that were returned,
+    /// nothing is proven, and the lower bound of the depth is 0.
+    InconsistentSupport,
+}
+
+impl Status {
+    /// Returns the status of a search that ended early, with `iterations` left of `max_iterations`, of which the
+    /// library allows `cap`.
+    pub(crate) fn of_early_end(iterations_left: u64, max_iterations: u64, cap: u64) -> Self {
+        match (iterations_left, max_iterations < cap) {
+            (0, true) => Status::IterationLimit,
+            (0, false) => Status::SupportLimit,
+            _ => Status::Rounding,
+        }
+    }
+
+    /// Returns [`Status::Converged`] if the criterion is met, else this status.
+    pub(crate) fn unless(self, is_met: bool) -> Self {
+        if is_met { Status::Converged } else { self }
+    }
+}
+
+/// An overlap: depth, direction, position.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Penetration {
+    /// Metres, >= 0. Moving obj2 by `depth * dir` separates the objects.
+    pub depth: f64,
+    /// Proven lower bound of the globally least depth, metres; 0 if none is proven.
+    pub depth_lower: f64,
+    /// Penetration direction, unit: obj2 moves along it.
+    pub dir: Vec3,
+    /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in a query along
+    /// a given direction.
+    pub normal: Vec3,
+    /// Contact position; zero if it was not requested.
+    pub pos: Vec3,
+    /// Witness point on obj1.
+    pub point1: Vec3,
+    /// Witness point on obj2.
+    pub point2: Vec3,
+    /// Number of iterations of the solver, as [`Settings::max_iterations`] counts them.
+    pub iterations: u64,
+    /// Why the search ended.
+    pub status: Status,
+}
+
+impl Penetration {
+    /// Returns whether the distance of the witness points is `depth` along the normal, within the tolerance, and
+    /// at most sqrt(2 · depth · tolerance) perpendicular to it.
+    pub fn has_sound_witnesses(&self, tolerance: f64) -> bool {
+        let difference = self.point1 - self.point2;
+        let along = difference.dot(&self.normal);
+        let perpendicular2 = (difference - self.normal * along).norm_squared();
+        (along - self.depth).abs() <= tolerance && perpendicular2 <= 2.0 * self.depth * tolerance
+    }
+
+    /// Returns the middle of the witness points.
+    pub fn middle(&self) -> Vec3 {
+        (self.point1 + self.point2) * 0.5
+    }
+}
