@@ -8,7 +8,7 @@
 //! k² differences a_i − b_j. They are points of D, so conv{a_i} − conv{b_j} is an *inner model* of D, whose
 //! support function costs dot products and no callback. MPR, EPA and GJK need *a* point of D beyond their
 //! current plane, not the farthest one: they take a known difference if one is far enough beyond the plane,
-//! and otherwise evaluate the callbacks ([`SupportQuery`](query::SupportQuery)).
+//! and otherwise evaluate the callbacks ([`SupportQuery`](support_query::SupportQuery)).
 //!
 //! | file | contents |
 //! |---|---|

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The queries of a pair, and the steps that the penetration queries share. (The intersection test is in
-//! [`crate::gjk::intersect`], the signed distance in [`crate::query::signed_distance`].)
+//! [`crate::gjk::intersect`], the signed distance in [`mod@signed_distance`].)
 //!
 //! 1. *Separating axis*: evaluate the separating axis of the last query. If it still separates, the query
 //!    ends after one support point.
