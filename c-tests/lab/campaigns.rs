@@ -35,6 +35,10 @@ fn states() -> Executable {
     program.flag("-DOURS_ALONE").link_ours_shared().build()
 }
 
+fn worst_case() -> Executable {
+    programs::beside_libccd(Program::c("worst_case").source("lab/worst_case.c"))
+}
+
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_default();
@@ -44,7 +48,7 @@ fn main() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::alone("wide"), &given, &["1000", "-1", "0", "1"]),
         "states" => show(&states(), &given, &["400", "1000000"]),
-        "worst" => show(&program("worst_case"), &given, &["1000000", "1"]),
+        "worst" => show(&worst_case(), &given, &["1000000", "1"]),
         #[cfg(not(feature = "single"))]
         "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
         #[cfg(not(feature = "single"))]

@@ -17,9 +17,14 @@ pub fn alone(name: &str) -> Executable {
 
 /// Builds a program with this library, and in double precision system libccd beside it.
 pub fn program(name: &str) -> Executable {
+    beside_libccd(source(name))
+}
+
+/// Builds a program of another folder so.
+pub fn beside_libccd(program: Program) -> Executable {
     match Precision::CURRENT {
-        Precision::Double => source(name).link_ours_renamed_and_system().build(),
-        Precision::Single => alone(name),
+        Precision::Double => program.link_ours_renamed_and_system().build(),
+        Precision::Single => program.flag("-DOURS_ALONE").link_ours_static().build(),
     }
 }
 

@@ -45,16 +45,6 @@ fn known_costs() {
     };
 }
 
-/// No call of this library takes a thousand callbacks: the table of few queries.
-#[test]
-fn worst_case() {
-    let table = program("worst_case").run(["2000"]).stdout;
-    let ours = table.lines().filter(|line| line.starts_with("| `ccd"));
-    let most = ours.map(|line| line.split('|').nth(4).map(|cell| cell.trim().parse::<u32>()));
-    let most: Vec<u32> = most.map(|n| n.expect("a cell").expect("a number")).collect();
-    assert!(most.len() == 7 && most.iter().all(|n| (1..1000).contains(n)), "{table}");
-}
-
 /// Judges a sample of every category of pairs, both tie rules.
 fn judge_sample(pairs: &str, group: &str) {
     program("campaign").run([pairs, "-1", group]);
