@@ -98,8 +98,8 @@ const _: () = assert!(ARENA_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES)
 const ROUNDING_GAP_EPS: f64 = 32.0;
 /// The extent of D, in height epsilons, up to which it counts as flat. Derived as [`ROUNDING_GAP_EPS`].
 const MIN_EXTENT_EPS: f64 = ROUNDING_GAP_EPS;
-/// The least distance of a known corner of a start from the other corners, in sizes of D. Measured (`cargo test --test
-/// stability` in single precision, `campaigns -- wide` at tolerance 0): if all known corners are accepted, or none,
+/// The least distance of a known corner of a start from the other corners, in sizes of D. Measured (`cargo test
+/// stability::` in single precision, `campaigns -- wide` at tolerance 0): if all known corners are accepted, or none,
 /// more proofs end at the support limit.
 const KNOWN_EXTENT_REL: f64 = 1e-3;
 /// The number of iterations above which D counts as curved at the minimum ([`WarmKind::CurvedOverlap`]).
