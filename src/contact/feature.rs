@@ -1,33 +1,30 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The feature of an object in a contact: the vertices of its surface around the deepest point.
+//! Finds the feature of an object in a contact: the vertices of its surface around the deepest point.
 //!
-//! Finds the support vertices along four directions tilted from the normal n by T: n + T (±e1), n + T (±e2).
-//! They are the outermost corners of a face, and four evenly spaced points of a curved surface.
+//! The feature consists of the support vertices along all directions tilted from the normal n by T, n + T out for unit
+//! `out` perpendicular to n: all corners of a face, the ends of an edge, points around the deepest one of a curved
+//! surface. The *drop* of a vertex is its distance below the support plane, in units of the depth. Its *height* along
+//! `out` is its component along n + T out, divided by T.
 //!
-//! Terms. The *drop* of a vertex is its distance below the support plane; here it is in units of the depth. The
-//! *cover* of a tilted direction is the largest tilt towards it among the evaluated directions that returned
-//! its predicted vertex.
+//! 1. *Project* the known vertices of both objects into the contact frame, in one pass. obj2 is mirrored (−b for b), so
+//!    that the normal points out of both objects and all later steps serve either.
+//! 2. *Polytope or curved*: an object is taken for a polytope if two different directions returned the same vertex, and
+//!    for curved otherwise; for the other if the queries contradict.
+//! 3. *Polytope* ([`FeatureQuery::find_polygon`]): begins with the known vertices of greatest height along ±e1 and ±e2.
+//!    Beyond each side the direction is evaluated along which both of its ends have the same height, until no side has
+//!    a corner beyond it. So the polygon is the same whatever was known. If four corners are a parallelogram and its
+//!    longest side has no corner beyond it, neither has any other. A corner and an edge are known if evaluated
+//!    directions around them returned them.
+//! 4. *Curved* ([`FeatureQuery::find_curved`]): two opposite directions are evaluated, 45° from that to the center. The
+//!    mirror images of both vertices in the plane of the normal and the center are the other two: right for bodies of
+//!    revolution. If they cannot be, these directions are evaluated too. Of a disc the points between them on its rim
+//!    are computed.
 //!
-//! 1. *Project* the known vertices of both objects into the contact frame, in one pass. obj2 is mirrored
-//!    (−b for b), so that the normal points out of both objects and all later steps serve either.
-//! 2. *Predict* for each of the four directions the known vertex farthest along it.
-//! 3. *Polytope*: if two evaluated directions returned the same vertex. A prediction is accepted if its cover is
-//!    at least [`MIN_COVER`] T; otherwise it is queried, the least covered first. (The directions that return a
-//!    vertex form a convex set, which mostly contains the contact normal.) If the four vertices are only two,
-//!    the ends of an edge, a face beside it may be unknown: both sides are queried, unless an evaluated
-//!    direction that returned an end is tilted to that side.
-//! 4. *Curved* otherwise: opposite directions are queried. If the two opposite vertices are symmetric about the
-//!    deepest point, that point is the center of pressure. If a query returns its predicted vertex, the object
-//!    is taken for a polytope.
-//! 5. *Fan*: the four vertices in their order around the deepest point, with a fifth corner of a polytope, or
-//!    with the points between them on the rim of a disc.
-//!
-//! One file above 400 lines, because all steps use the same projection. Related: Bullet (`btConvexConvexAlgorithm`)
-//! and MuJoCo (`multiccd`) rotate an object by small angles and repeat the whole query; here only the support
-//! function is evaluated along tilted normals. Figures are from `c-tests/tests/extension/pressure.c` and recorded
-//! contacts.
+//! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
+//! the whole query; here only the support function is evaluated along tilted normals. Errors are those of
+//! `c-tests/tests/extension/faces.c` and `pressure.c`.
 
 use crate::contact::frame::ContactFrame;
 use crate::geometry::polygon::{Vec2, offset};
@@ -44,25 +41,38 @@ pub const MAX_KNOWN: usize = 16;
 const TILT_FACTOR: f64 = 1.8;
 /// Largest T, 14°; reached if the depth exceeds extent / 52.
 const MAX_TILT_TAN: f64 = 0.25;
-/// Least cover of an accepted prediction, relative to T. Measured: root mean square error of 7.5 mm with 0.4,
-/// 1.8 mm with 0.6.
+/// Least tilt of an evaluated direction that replaces the query of a corner or an edge, relative to T. Measured: root
+/// mean square error of 7.5 mm with 0.4, 1.8 mm with 0.6.
 const MIN_COVER: f64 = 0.6;
 /// Least cosine between the normal and an evaluated direction that is used. Others return vertices at the side or
 /// at the back of the object.
 const MIN_COSINE: f64 = 0.1;
+/// Least difference of two directions that prove a vertex if both return it, relative to T. A curved surface returns
+/// nearly the same vertex for nearly the same direction.
+const MIN_TURN_REL: f64 = 0.05;
+/// Least number of known vertices, none of them returned twice, of an object that mirror images are taken of. With 0
+/// the corners of a box of which little is known are taken for a curved surface: error 14 mm.
+const MIN_CURVED_KNOWN: usize = 4;
+/// Largest distance of a vertex from the mirror plane, relative to T times the extent: the radius of curvature is at
+/// most 1.1 times the extent. Corners of faces are farther away. Measured: with 1 a position is off the object in one
+/// hit of 30,000, with 0.5 a hit takes 0.2 support points more.
+const MAX_CURVED_ASIDE: f64 = 0.8;
+/// Least height that such a vertex has lost by its drop, relative to that distance: 0.35 on a sphere, 0 on a face.
+const MIN_CURVED_DROP: f64 = 0.3;
+/// Largest such loss of the vertex away from the center, relative to that distance: 0.7 on a sphere.
+const MAX_CURVED_DROP: f64 = 0.9;
 /// Largest length of the sum of two opposite vertices that count as symmetric, relative to the extent.
 const SYMMETRY_REL_TOL: f64 = 0.004;
 /// A feature no larger than this, relative to the extent, counts as a point: the center of pressure is within a
-/// quarter of that size.
+/// quarter of that size. No corner is searched beyond a shorter side.
 const POINT_REL: f64 = 0.016;
 /// Distance, relative to the extent, below which two vertices are the same.
 const SAME_REL: f64 = 1e-7;
-/// Largest difference of the drop, in depths, between a fourth corner and the plane of three for a common face.
-/// Above it the surface between them is not flat. Insensitive: 0.1 to 1 tried.
-const FACE_DROP_TOL: f64 = 0.1;
-/// Relative area below which three corners count as collinear, and the deepest point as inside a side.
-/// Insensitive: 0.005 to 0.08 tried.
-const NARROW_REL: f64 = 0.02;
+/// Largest drop, in depths, that counts as in the support plane: an error of a third of this fraction of the half
+/// width. Insensitive: 0.01 to 0.05 tried.
+pub const IN_PLANE_DROP_TOL: f64 = 0.02;
+/// Largest difference of drops that count as equal, in depths. Insensitive: 0.1 to 1 tried.
+const SAME_DROP_TOL: f64 = 0.1;
 /// Largest distance of a vertex from the fitted rim of a disc, relative to the radius: ten times the rounding of
 /// callbacks in single precision.
 const RIM_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-4 } else { 1e-3 };
@@ -73,25 +83,12 @@ const COMMON_DROP_FACTOR: f64 = 0.75;
 /// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest
 /// point is inside. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
 const VERTEX_OFFSET_REL: f64 = 1.0 / 512.0;
-/// Least value of twice the area of a triangle, relative to the square of the vertex offset.
-const MIN_AREA_REL: f64 = f64::EPSILON;
-
-/// The four tilt directions, along the axes.
-const TILT_DIRECTIONS: [Vec2; 4] = [
-    Vec2::new(1.0, 0.0),
-    Vec2::new(0.0, 1.0),
-    Vec2::new(-1.0, 0.0),
-    Vec2::new(0.0, -1.0),
-];
+/// Largest number of corners of a polygon.
+const MAX_CORNERS: usize = 10;
+/// Largest number of steps of its search: each corner is found once and each side closed once.
+const MAX_STEPS: usize = 2 * MAX_CORNERS + 4;
 /// The coordinate of a diagonal unit vector.
 const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
-/// The directions between them.
-const DIAGONALS: [Vec2; 4] = [
-    Vec2::new(H, H),
-    Vec2::new(-H, H),
-    Vec2::new(-H, -H),
-    Vec2::new(H, -H),
-];
 
 /// Returns whether the distance of two vertices along each axis is at most `distance`.
 #[inline(always)]
@@ -105,146 +102,181 @@ pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Four vertices of an object around the deepest point, counterclockwise: the support vertices of the tilted
-/// directions, predicted or queried, or those beside an edge.
-struct Feature {
-    vertices: [Vec3; 4],
-    /// The outward direction of each, unit.
-    outwards: [Vec2; 4],
-    /// The height of each along its tilted direction, divided by T.
-    scores: [f64; 4],
-    /// The cover of each.
-    cover: [f64; 4],
-    /// True if two evaluated directions returned the same vertex: they are vertices of a polytope.
-    is_polytope: bool,
-}
-
-/// The vertices of a feature, counterclockwise around the deepest point.
-#[derive(Clone, Copy, Debug)]
-pub struct Fan {
-    /// `vertices[len]` repeats the first one.
-    pub vertices: [Vec3; Fan::CAPACITY],
-    /// For each vertex twice the area of the triangle of the deepest point, it and the next vertex.
-    pub areas: [f64; Fan::CAPACITY],
-    pub len: usize,
-}
-
-/// Returns the gradient of the drop in the plane of three vertices, depths per metre.
+/// Returns unit `out` and the directions at right angles to it, counterclockwise.
 #[inline(always)]
-fn drop_gradient([a, b, c]: [&Vec3; 3]) -> Vec2 {
-    let normal = (b - a).cross(&(c - a));
-    normal.xy() / -normal.z
+fn four_directions(out: Vec2) -> [Vec2; 4] {
+    let left = Vec2::new(-out.y, out.x);
+    [out, left, -out, -left]
+}
+
+/// The vertices of both objects that the same evaluated direction returned, in the contact frame.
+#[derive(Clone, Copy)]
+pub struct KnownPair {
+    x: [f64; 2],
+    y: [f64; 2],
+    /// In depths.
+    drop: [f64; 2],
+    /// The tilt of the direction, tangents.
+    tilt: [f64; 2],
+}
+
+impl KnownPair {
+    /// Two vertices at the deepest point.
+    pub const ZERO: Self = Self {
+        x: [0.0; 2],
+        y: [0.0; 2],
+        drop: [0.0; 2],
+        tilt: [0.0; 2],
+    };
+
+    /// Returns the vertex of an object.
+    #[inline(always)]
+    fn vertex(&self, object: usize) -> Vec3 {
+        let k = object % 2;
+        Vec3::new(self.x[k], self.y[k], self.drop[k])
+    }
 }
 
 /// The projected known vertices of both objects of a contact, and queries of further ones.
-pub struct FeatureQuery<'q, A, B, const N: usize> {
+pub struct FeatureQuery<'q, A, B> {
     md: &'q MinkowskiDifference<A, B>,
-    set: &'q VertexSet<N>,
     pub frame: ContactFrame,
-    /// x, y and drop (in depths) of each known vertex.
-    known: &'q [[[f64; 2]; 3]],
-    /// The index of the first of them in the set.
-    first_known: usize,
-    /// x and y of the center of each object; without centers, of the middle of the witness points.
-    centers: [[f64; 2]; 2],
+    known: &'q [KnownPair],
+    /// Whether different directions returned the same vertex of an object.
+    is_polytope: [bool; 2],
+    /// x and y of the center of each object; without centers, the mean of the known vertices.
+    centers: [Vec2; 2],
+    has_centers: bool,
     /// The object of smaller extent, as far as its vertices are known, 0 or 1.
     pub smaller: usize,
     /// Largest distance of its known vertices and center from the contact, metres.
     extent: f64,
-    /// The unit of drops, metres.
-    pub depth: f64,
+    /// The reciprocal of the unit of drops, 1/metres.
+    per_depth: f64,
     /// Distance of the support planes from the frame's origin, metres.
     half_gap: f64,
-    /// T, a tangent.
+    /// T, a tangent, and the cosine of that angle.
     tilt: f64,
+    cosine: f64,
     /// Depth divided by T, metres.
     depth_over_tilt: f64,
     /// Distance by which vertices are moved outwards, metres.
     pub vertex_offset: f64,
 }
 
-impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N> {
-    /// Projects the known vertices and stores them in `known`. The frame's origin is midway between the support
-    /// planes. `gap`: the distance of these, metres. `depth`: the larger of that and the tolerance, metres.
+impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
+    /// Projects the known vertices and stores them in `known`. The frame's origin is midway between the support planes.
+    /// `gap`: the distance of these, metres. `depth`: the larger of that and the tolerance, metres.
     #[inline(always)]
-    pub fn new(
+    pub fn new<const N: usize>(
         md: &'q MinkowskiDifference<A, B>,
         set: &'q VertexSet<N>,
-        known: &'q mut [[[f64; 2]; 3]; MAX_KNOWN],
+        known: &'q mut [KnownPair; MAX_KNOWN],
         frame: ContactFrame,
         centers: Option<[Vec3; 2]>,
         [gap, depth]: [f64; 2],
     ) -> Self {
         let (half_gap, per_depth) = (0.5 * gap, 1.0 / depth);
         let (o, n, [e1, e2]) = (frame.origin, frame.normal, frame.axes);
+        let origin = [[o.x, -o.x], [o.y, -o.y], [o.z, -o.z]];
         let mut far2 = [0.0; 2];
         let mut project = |[x, y, z]: [[f64; 2]; 3]| {
-            let mut projected = [[0.0; 2]; 3];
-            for (k, side) in [1.0, -1.0].into_iter().enumerate() {
-                let (x, y, z) = (x[k] - side * o.x, y[k] - side * o.y, z[k] - side * o.z);
+            let mut pair = KnownPair::ZERO;
+            for k in 0..2 {
+                let (x, y) = (x[k] - origin[0][k], y[k] - origin[1][k]);
+                let z = z[k] - origin[2][k];
                 far2[k] = larger(x * x + y * y + z * z, far2[k]);
-                projected[0][k] = e1.x * x + e1.y * y + e1.z * z;
-                projected[1][k] = e2.x * x + e2.y * y + e2.z * z;
+                pair.x[k] = e1.x * x + e1.y * y + e1.z * z;
+                pair.y[k] = e2.x * x + e2.y * y + e2.z * z;
                 let height = n.x * x + n.y * y + n.z * z;
-                projected[2][k] = larger((half_gap - height) * per_depth, 0.0);
+                pair.drop[k] = larger((half_gap - height) * per_depth, 0.0);
             }
-            projected
+            pair
         };
         let first_known = set.len().saturating_sub(MAX_KNOWN);
-        let len = set.len() - first_known;
-        for (i, projected) in known.iter_mut().enumerate().take(len) {
-            *projected = project(set.coords(first_known + i));
+        let mut len = 0;
+        let mut sum = KnownPair::ZERO;
+        for (coords, dir) in set.coords_from(first_known).zip(set.dirs_from(first_known)) {
+            let pair = project(coords);
+            // A point that no call returned has no direction.
+            let cosine = n.dot(dir);
+            if cosine > MIN_COSINE {
+                let tilt = [e1.dot(dir) / cosine, e2.dot(dir) / cosine];
+                known[len % MAX_KNOWN] = KnownPair { tilt, ..pair };
+                len += 1;
+                for k in 0..2 {
+                    sum.x[k] += pair.x[k];
+                    sum.y[k] += pair.y[k];
+                }
+            }
         }
-        let [c1, c2] = centers.unwrap_or([o; 2]);
-        let [x, y, _] = project([[c1.x, -c2.x], [c1.y, -c2.y], [c1.z, -c2.z]]);
+        let center = match &centers {
+            Some([c1, c2]) => project([[c1.x, -c2.x], [c1.y, -c2.y], [c1.z, -c2.z]]),
+            None => sum,
+        };
         let smaller = usize::from(far2[1] < far2[0]);
         let extent = far2[smaller].sqrt();
         let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
+        let known = known.get(..len).unwrap_or(&[]);
         Self {
             md,
-            set,
             frame,
-            known: known.get(..len).unwrap_or(&[]),
-            first_known,
-            centers: [x, y],
+            known,
+            is_polytope: have_repeated_vertex(known, SAME_REL * extent, MIN_TURN_REL * tilt),
+            centers: [0, 1].map(|k| Vec2::new(center.x[k], center.y[k])),
+            has_centers: centers.is_some(),
             smaller,
             extent,
-            depth,
+            per_depth,
             half_gap,
             tilt,
+            cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
             depth_over_tilt: depth / tilt,
             vertex_offset: larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent),
         }
     }
 
-    /// Returns the known vertices of an object.
+    /// Returns what has been seen of an object: its known vertices.
     #[inline(always)]
-    pub fn known(&self, object: usize) -> impl Iterator<Item = Vec3> + '_ {
-        let k = object % 2;
-        self.known
-            .iter()
-            .map(move |[x, y, drop]| Vec3::new(x[k], y[k], drop[k]))
+    fn seen(&self, object: usize) -> Seen<'q> {
+        Seen {
+            known: self.known,
+            object,
+            queried: [ZERO; Seen::MAX_QUERIED],
+            len: 0,
+        }
     }
 
-    /// Evaluates an object along the tilted normal. `tilt`: tangents.
+    /// Returns the known vertices of an object with the greatest height along ±e1 and ±e2.
+    #[inline(always)]
+    pub fn known_extremes(&self, object: usize) -> [Vec3; 4] {
+        self.seen(object).extremes(self.depth_over_tilt)
+    }
+
+    /// Evaluates an object along n + T `out`.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
-    fn query(&self, object: usize, tilt: Vec2) -> Result<Vec3, Fault> {
-        let dir = self.frame.tilted_direction(1.0, tilt);
-        let side = if object == 0 { 1.0 } else { -1.0 };
-        let p = self.md.support_of_object(object, &dir);
-        let p = self.frame.project(&p)? * side;
-        let drop = larger((self.half_gap - p.z) / self.depth, 0.0);
-        Ok(Vec3::new(p.x, p.y, drop))
+    fn query(&self, seen: &mut Seen, out: Vec2) -> Result<Vec3, Fault> {
+        let [e1, e2] = &self.frame.axes;
+        let aside = (e1 * out.x + e2 * out.y) * (self.tilt * self.cosine);
+        let dir = self.frame.normal * self.cosine + aside;
+        let p = self.md.support_of_object(seen.object, &dir);
+        let p = self.frame.project(&p)? * if seen.object == 0 { 1.0 } else { -1.0 };
+        let v = Vec3::new(
+            p.x,
+            p.y,
+            larger((self.half_gap - p.z) * self.per_depth, 0.0),
+        );
+        seen.push(v);
+        Ok(v)
     }
 
-    /// Returns the height of a vertex along each of the tilted directions, divided by T.
+    /// Returns the height of a vertex along n + T `out`, divided by T.
     #[inline(always)]
-    fn scores(&self, v: &Vec3) -> [f64; 4] {
-        let drop = v.z * self.depth_over_tilt;
-        [v.x - drop, v.y - drop, -v.x - drop, -v.y - drop]
+    fn height(&self, v: &Vec3, out: &Vec2) -> f64 {
+        out.dot(&v.xy()) - v.z * self.depth_over_tilt
     }
 
     /// Returns the distance below which two vertices are the same, metres.
@@ -253,249 +285,253 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         SAME_REL * self.extent
     }
 
-    /// Predicts the support vertices of the tilted directions from the known vertices.
-    #[inline(always)]
-    fn predict(&self, object: usize) -> Feature {
-        let mut found = Feature {
-            vertices: [Vec3::zeros(); 4],
-            outwards: TILT_DIRECTIONS,
-            scores: [f64::NEG_INFINITY; 4],
-            cover: [0.0; 4],
-            is_polytope: false,
-        };
-        let mut is_returned = [false; 4];
-        let [e1, e2] = &self.frame.axes;
-        let same = self.same_distance();
-        for (i, v) in self.known(object).enumerate() {
-            let scores = self.scores(&v);
-            let dir = self.set.dir(self.first_known + i);
-            let is_facing = self.frame.normal.dot(&dir) > MIN_COSINE;
-            let (x, y) = (e1.dot(&dir), e2.dot(&dir));
-            for (k, tilt) in [x, y, -x, -y].into_iter().enumerate() {
-                let gain = scores[k] - found.scores[k];
-                if gain > same {
-                    (found.scores[k], found.vertices[k]) = (scores[k], v);
-                    (is_returned[k], found.cover[k]) = (is_facing, 0.0);
-                    if is_facing {
-                        found.cover[k] = tilt;
-                    }
-                } else if gain >= -same && is_facing && is_within(&v, &found.vertices[k], same) {
-                    found.is_polytope |= is_returned[k];
-                    is_returned[k] = true;
-                    found.cover[k] = larger(tilt, found.cover[k]);
-                }
-            }
-        }
-        found
-    }
-
-    /// Finds the feature of an object; None if opposite vertices are symmetric about the deepest point. `towards`:
-    /// selects the direction that is queried first if the object may be curved.
+    /// Finds the feature of an object and makes its fan. Returns false if the deepest point is the center of pressure:
+    /// the feature is a point.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    fn find_feature(&self, object: usize, towards: Vec2) -> Result<Option<Feature>, Fault> {
-        let mut found = self.predict(object);
-        let mut is_queried = [false; 4];
-        let mut next = usize::from(towards.y.abs() > towards.x.abs());
-        let (mut hits, mut misses) = (0, 0);
-        // Each iteration queries another one of the four directions.
-        for _ in 0..4 {
-            if found.is_polytope {
-                let cover = &found.cover;
-                next = (1..4).fold(0, |k, i| if cover[i] < cover[k] { i } else { k });
-                if !(cover[next] < MIN_COVER * self.tilt) {
-                    break;
-                }
-            }
-            let v = self.query(object, TILT_DIRECTIONS[next % 4] * self.tilt)?;
-            if is_within(&v, &found.vertices[next % 4], self.same_distance()) {
-                (found.is_polytope, hits) = (true, hits + 1);
-            } else {
-                misses += 1;
-                // Two directions in a plane with a disc's axis return the same rim point. So a vertex returned twice
-                // does not prove a polytope; after two failed predictions and no correct one it is not one.
-                found.is_polytope &= hits > 0 || misses < 2;
-            }
-            is_queried[next % 4] = true;
-            if found.is_polytope {
-                found.improve_predictions(&v, &self.scores(&v), &is_queried);
-            }
-            (found.vertices[next % 4], found.cover[next % 4]) = (v, f64::INFINITY);
-            if !found.is_polytope {
-                let opposite = (next + 2) % 4;
-                if misses == 2 && is_queried[opposite] {
-                    if self.is_symmetric(&v, &found.vertices[opposite]) {
-                        return Ok(None);
-                    }
-                    next = (next + 1) % 4;
+    pub fn build_fan(&self, object: usize, fan: &mut Fan) -> Result<bool, Fault> {
+        let mut seen = self.seen(object);
+        let is_polytope = self.is_polytope[object % 2];
+        if !(is_polytope && self.find_polygon(&mut seen, true, fan)?
+            || self.find_curved(&mut seen, fan)?)
+        {
+            self.find_polygon(&mut seen, false, fan)?;
+        }
+        let (mut least, mut is_point) = (1.0, true);
+        let size2 = POINT_REL * POINT_REL * self.extent * self.extent;
+        for v in fan.vertices.iter().take(fan.len) {
+            let drop = larger(v.z, 1.0);
+            is_point &= v.xy().norm_squared() <= size2 * drop * drop;
+            least = lesser(v.z, least);
+        }
+        if is_point {
+            return Ok(false);
+        }
+        for v in fan.vertices.iter_mut().take(fan.len) {
+            v.z -= COMMON_DROP_FACTOR * least;
+        }
+        fan.close();
+        Ok(fan.contains_deepest_point() || fan.enclose_deepest_point(self.vertex_offset))
+    }
+
+    /// Finds the polygon of a polytope and makes its fan. Returns false if `may_fail` and the first two queries return
+    /// new vertices: two directions in a plane with a disc's axis return the same rim point, so a vertex returned twice
+    /// does not prove a polytope.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(never)]
+    fn find_polygon(&self, seen: &mut Seen, may_fail: bool, fan: &mut Fan) -> Result<bool, Fault> {
+        let same = self.same_distance();
+        let mut polygon = Polygon::default();
+        for v in &seen.extremes(self.depth_over_tilt) {
+            polygon.push_distinct(v, same);
+        }
+        let least_side = POINT_REL * self.extent;
+        // The number of directions done around a corner or an edge, and that of queries that returned known vertices
+        // and new ones.
+        let (mut step, mut hits, mut misses) = (0, 0, 0);
+        for _ in 0..MAX_STEPS {
+            let n = polygon.len;
+            let Some((side, out)) = self.next_direction(&polygon, step, least_side) else {
+                break;
+            };
+            let ends = polygon.side(side);
+            let [p, q] = ends.map(|end| self.height(end, &out));
+            let least = larger(p, q) + 2.0 * self.vertex_offset;
+            let mut found = seen.highest(out, self.depth_over_tilt, least);
+            let is_side = n > 2 || n == 2 && step < 2;
+            let is_covered =
+                n < 3 && found.is_none() && self.is_covered(seen.object, out, ends, is_side);
+            if found.is_none() && !is_covered {
+                let v = self.query(seen, out)?;
+                if self.height(&v, &out) > least {
+                    (found, misses) = (Some(v), misses + 1);
                 } else {
-                    next = opposite;
+                    hits += 1;
                 }
-                if is_queried[next % 4] {
-                    next = is_queried.iter().position(|q| !*q).unwrap_or(0);
+                if may_fail && n < 3 && hits == 0 && misses == 2 {
+                    return Ok(false);
+                }
+            }
+            step += 1;
+            match found.filter(|v| !polygon.has(v, same)) {
+                None => {
+                    polygon.is_closed[side] = is_side && !is_covered;
+                    if n == 4 && polygon.is_parallelogram(SYMMETRY_REL_TOL * self.extent) {
+                        break;
+                    }
+                }
+                // Beyond an end of an edge.
+                Some(v) if !is_side && n == 2 => {
+                    polygon.corners[usize::from(step == 3)] = v;
+                    polygon.is_closed = [false; MAX_CORNERS];
+                    step = 0;
+                }
+                Some(v) => {
+                    polygon.insert(side, &v);
+                    step = 0;
+                    // A corner below the new one may now be lower in all directions.
+                    for i in [side + 2, side] {
+                        let corner = polygon.side(i)[0];
+                        let lower = larger(corner.z - v.z, 0.0) * self.depth_over_tilt;
+                        if lower * lower > offset(corner, &v).norm_squared() {
+                            polygon.remove(i);
+                        }
+                    }
                 }
             }
         }
-        if found.is_polytope {
-            self.query_sides_of_edge(object, &mut found)?;
-        }
-        Ok(Some(found))
+        polygon.write_fan(fan, self.vertex_offset);
+        Ok(true)
     }
 
-    /// Queries both sides of a feature that is an edge, because a face beside it may be unknown; not a side to
-    /// which an evaluated direction that returned an end is tilted.
+    /// Returns the side of a polygon beyond which a corner is to be searched next, and the direction; None if the polygon
+    /// is complete. Around a corner, directions are the axes; around an edge those to both sides and beyond both ends.
     #[inline(always)]
-    fn query_sides_of_edge(&self, object: usize, feature: &mut Feature) -> Result<(), Fault> {
-        let [a, rest @ ..] = feature.vertices;
-        let is_same = |p: &Vec3, q: &Vec3| is_within(p, q, self.same_distance());
-        let Some(&b) = rest.iter().find(|v| !is_same(v, &a)) else {
-            return Ok(());
-        };
-        if !rest.iter().all(|v| is_same(v, &a) || is_same(v, &b)) {
-            return Ok(());
-        }
-        let along = offset(&a, &b) / offset(&a, &b).norm();
-        let left = Vec2::new(-along.y, along.x);
-        feature.vertices = [a, a, b, b];
-        feature.outwards = [-along, -left, along, left];
-        let [_, vertex1, _, vertex3] = &mut feature.vertices;
-        for (vertex, out) in [(vertex1, -left), (vertex3, left)] {
-            let is_covered = self.known(object).enumerate().any(|(i, p)| {
-                let dir = self.set.dir(self.first_known + i);
-                let cosine = self.frame.normal.dot(&dir);
-                let tilt = Vec2::from(self.frame.axes.map(|e| e.dot(&dir) / cosine));
-                let is_tilted_out =
-                    tilt.dot(&out) - 2.0 * tilt.perp(&out).abs() >= MIN_COVER * self.tilt;
-                cosine > MIN_COSINE && is_tilted_out && (is_same(&p, &a) || is_same(&p, &b))
-            });
-            if !is_covered {
-                let p = self.query(object, out * self.tilt)?;
-                if out.dot(&offset(&a, &p)) > 2.0 * self.vertex_offset {
-                    *vertex = p;
-                }
+    fn next_direction(
+        &self,
+        polygon: &Polygon,
+        step: usize,
+        least_side: f64,
+    ) -> Option<(usize, Vec2)> {
+        match (polygon.len, step) {
+            (1, 0..4) => Some((0, four_directions(Vec2::x())[step])),
+            (2, 0..2) => Some((step, self.outwards(polygon.side(step)))),
+            (2, 2..4) => {
+                let [p, q] = polygon.side(step - 2);
+                let along = offset(p, q);
+                Some((0, along * (1.0 / along.norm())))
+            }
+            (0..3 | MAX_CORNERS, _) => None,
+            _ => {
+                let side = polygon.longest_open_side(least_side * least_side)?;
+                Some((side, self.outwards(polygon.side(side))))
             }
         }
-        Ok(())
     }
 
-    /// Returns the displacement from the deepest point to the center of an object.
+    /// Returns the unit direction out of a side along which both of its ends have the same height.
     #[inline(always)]
-    pub fn towards_center(&self, object: usize) -> Vec2 {
-        self.centers.map(|xy| xy[object % 2]).into()
+    fn outwards(&self, [p, q]: [&Vec3; 2]) -> Vec2 {
+        let side = offset(p, q);
+        let per_length = 1.0 / side.norm();
+        let along = side * per_length;
+        let lean = (q.z - p.z) * self.depth_over_tilt * per_length;
+        let lean = lesser(larger(lean, -1.0), 1.0);
+        Vec2::new(along.y, -along.x) * (1.0 - lean * lean).sqrt() + along * lean
     }
 
-    /// Returns whether two vertices are symmetric about the deepest point.
-    fn is_symmetric(&self, a: &Vec3, b: &Vec3) -> bool {
-        let tolerance = SYMMETRY_REL_TOL * self.extent;
-        let distance2 = (a + b).xy().norm_squared();
-        distance2 < tolerance * tolerance && (a.z - b.z).abs() < FACE_DROP_TOL
-    }
-
-    /// Returns whether the vertices, as far down as the depth, are within a point's size.
-    fn is_point(&self, vertices: &[Vec3]) -> bool {
-        vertices.iter().all(|v| {
-            let size = POINT_REL * self.extent * larger(v.z, 1.0);
-            v.xy().norm_squared() <= size * size
+    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices; `is_side`: towards it
+    /// within 27°. (The directions that return a vertex form a convex set, which mostly contains the normal.)
+    #[inline(always)]
+    fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
+        let same = self.same_distance();
+        self.known.iter().any(|pair| {
+            let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
+            let aside = if is_side {
+                2.0 * tilt.perp(&out).abs()
+            } else {
+                0.0
+            };
+            tilt.dot(&out) - aside >= MIN_COVER * self.tilt
+                && ends.iter().any(|end| is_within(&v, end, same))
         })
     }
 
-    /// Finds the feature of an object and makes its fan. `towards`: selects the direction that is queried first if
-    /// the object may be curved. Returns false if the deepest point is the center of pressure: the feature is
-    /// symmetric about it, or is a point.
+    /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: a
+    /// query returns a vertex seen before, or four points are in a plane with the deepest one and not of a disc.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    pub fn build_fan(&self, object: usize, towards: Vec2, fan: &mut Fan) -> Result<bool, Fault> {
-        let Some(feature) = self.find_feature(object, towards)? else {
-            return Ok(false);
-        };
-        let vertices = &feature.vertices;
-        let is_curved = !feature.is_polytope;
-        let between = is_curved.then(|| self.fit_disc_rim(vertices)).flatten();
-        fan.len = 0;
-        for k in 0..4 {
-            fan.push(self.offset_outwards(&vertices[k], feature.outwards[k]));
-            if let Some(between) = &between {
-                fan.push(self.offset_outwards(&between[k], DIAGONALS[k]));
-            }
-        }
-        if between.is_none() {
-            if let Some((i, v)) = self.fifth_corner(object, vertices)? {
-                fan.insert(i, v);
-            }
-        }
-        if self.is_point(fan.vertices.get(..fan.len).unwrap_or(&[])) {
-            return Ok(false);
-        }
-        let drops = vertices.iter().chain(between.iter().flatten()).map(|v| v.z);
-        let common_drop = COMMON_DROP_FACTOR * drops.fold(1.0, lesser);
-        for v in fan.vertices.iter_mut().take(fan.len) {
-            v.z -= common_drop;
-        }
-        Ok(fan.compute_areas() || fan.enclose_deepest_point(self.vertex_offset))
-    }
-
-    /// Returns a vertex moved by the vertex offset along unit `out`.
-    #[inline(always)]
-    fn offset_outwards(&self, v: &Vec3, out: Vec2) -> Vec3 {
-        let distance = self.vertex_offset;
-        Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z)
-    }
-
-    /// Queries a fifth corner of a polytope, beyond a side of the four vertices. Returns its index among them and
-    /// the corner, moved outwards.
-    ///
-    /// If two of the four are the same corner, the side is the longest one of the triangle; else it is the side
-    /// beyond which the deepest point lies, if any. The direction is the normal of the plane of three corners,
-    /// tilted outwards over that side.
-    #[inline(always)]
-    fn fifth_corner(
-        &self,
-        object: usize,
-        vertices: &[Vec3; 4],
-    ) -> Result<Option<(usize, Vec3)>, Fault> {
-        let at = |i: usize| &vertices[i % 4];
-        let lengths2 = [0, 1, 2, 3].map(|i| (at(i + 1) - at(i)).xy().norm_squared());
-        let areas = [0, 1, 2, 3].map(|i| area2(at(i), at(i + 1)));
-        let repeated = (0..4).find(|i| is_within(at(*i), at(i + 1), 2.0 * self.vertex_offset));
-        let (side, opposite) = if let Some(repeated) = repeated {
-            let side = (1..4).fold(0, |k, i| if lengths2[i] > lengths2[k] { i } else { k });
-            let is_next = (side + 1) % 4 == repeated;
-            (side, side + if is_next { 3 } else { 2 })
+    fn find_curved(&self, seen: &mut Seen, fan: &mut Fan) -> Result<bool, Fault> {
+        let center = self.centers[seen.object % 2];
+        let distance = center.norm();
+        let has_axis = distance > self.same_distance();
+        let axis = if has_axis {
+            center / distance
         } else {
-            let side = (1..4).fold(0, |k, i| if areas[i] < areas[k] { i } else { k });
-            if !(areas[side] < -NARROW_REL * areas.iter().sum::<f64>()) {
-                return Ok(None);
-            }
-            (side, side + 2)
+            Vec2::x()
         };
-        let [o, p, q] = [opposite, side, side + 1].map(at);
-        let area = area2(&(p - o), &(q - o));
-        let length = lengths2[side].sqrt();
-        // Sides whose drop exceeds the depth are outside the overlap.
-        let is_wide =
-            area > NARROW_REL * lengths2[side] && area > 2.0 * self.vertex_offset * length;
-        if !(is_wide && (p.z < 1.0 || q.z < 1.0)) {
-            return Ok(None);
+        let out = four_directions(Vec2::new(axis.x - axis.y, axis.x + axis.y) * H);
+        let a = self.query(seen, out[0])?;
+        let c = self.query(seen, out[2])?;
+        if seen.has_repeated(2, self.same_distance()) {
+            return Ok(false);
         }
-        let gradient = drop_gradient([o, p, q]);
-        let out = Vec2::new(q.y - p.y, p.x - q.x) / length;
-        let v = self.query(object, gradient * self.depth + out * self.tilt)?;
-        let is_beyond = out.dot(&offset(p, &v)) > 2.0 * self.vertex_offset;
-        let is_in_plane = v.z <= o.z + gradient.dot(&offset(o, &v)) + FACE_DROP_TOL;
-        Ok((is_beyond && is_in_plane).then(|| (side + 1, self.offset_outwards(&v, out))))
+        let tolerance = SYMMETRY_REL_TOL * self.extent;
+        fan.is_symmetric = (a + c).xy().norm_squared() < tolerance * tolerance
+            && (a.z - c.z).abs() < SAME_DROP_TOL;
+        let mirror = |v: &Vec3| {
+            let along = 2.0 * axis.dot(&v.xy());
+            Vec3::new(along * axis.x - v.x, along * axis.y - v.y, v.z)
+        };
+        let (mut b, mut d) = (mirror(&c), mirror(&a));
+        // The distance of each from the mirror plane, on the side to which its direction is tilted.
+        let [aside_a, aside_c] = [axis.perp(&a.xy()), -axis.perp(&c.xy())];
+        let is_round = |v: &Vec3, aside: f64| {
+            let lost = v.z * self.depth_over_tilt;
+            aside >= -self.vertex_offset
+                && aside <= MAX_CURVED_ASIDE * self.tilt * self.extent
+                && lost >= MIN_CURVED_DROP * aside
+        };
+        let may_be_mirrored = fan.is_symmetric
+            || self.has_centers && has_axis && self.known.len() >= MIN_CURVED_KNOWN;
+        let is_mirrored = may_be_mirrored
+            && self.tilt < MAX_TILT_TAN
+            && is_round(&a, aside_a)
+            && is_round(&c, aside_c)
+            && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c
+            && self.is_below_known_planes(seen.object, [&b, &d], tolerance);
+        let mut between = None;
+        if !is_mirrored {
+            b = self.query(seen, out[1])?;
+            d = self.query(seen, out[3])?;
+            between = self.fit_disc_rim([&a, &b, &c, &d], &out);
+            let normal = (b - a).cross(&(c - a));
+            let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
+            let is_face = between.is_none() && drop_at_deepest < IN_PLANE_DROP_TOL;
+            if is_face || seen.has_repeated(2, self.same_distance()) {
+                return Ok(false);
+            }
+        }
+        fan.len = 0;
+        for (k, v) in [a, b, c, d].iter().enumerate() {
+            fan.push(moved(v, out[k], self.vertex_offset));
+            if let Some(between) = &between {
+                let out = (out[k] + out[(k + 1) % 4]) * H;
+                fan.push(moved(&between[k], out, self.vertex_offset));
+            }
+        }
+        Ok(true)
+    }
+
+    /// Returns whether two points of an object are at most `tolerance` beyond its known support planes.
+    #[inline(always)]
+    fn is_below_known_planes(&self, object: usize, points: [&Vec3; 2], tolerance: f64) -> bool {
+        let depth = self.tilt * self.depth_over_tilt;
+        let mut is_below = true;
+        for pair in self.known {
+            let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
+            for p in points {
+                let beyond = tilt.dot(&offset(&v, p)) - (p.z - v.z) * depth;
+                is_below &= beyond <= tolerance * self.tilt;
+            }
+        }
+        is_below
     }
 
     /// Returns the points midway between the four vertices on the rim of a disc; None if the vertices are not on
     /// such a rim. A disc returns its center plus the radius times the direction in its plane. (A square whose
     /// corners lie along the four tilt directions within 1e-4 rad is mistaken for a disc.)
-    fn fit_disc_rim(&self, vertices: &[Vec3; 4]) -> Option<[Vec3; 4]> {
-        let [a, b, c, d] = vertices;
-        let gradient = drop_gradient([a, b, c]);
-        let lean = gradient * self.depth;
+    #[inline(always)]
+    fn fit_disc_rim(&self, [a, b, c, d]: [&Vec3; 4], out: &[Vec2; 4]) -> Option<[Vec3; 4]> {
+        let normal = (b - a).cross(&(c - a));
+        let gradient = normal.xy() / -normal.z;
+        let lean = gradient * (self.tilt * self.depth_over_tilt);
         let scale = 1.0 / (1.0 + lean.norm_squared());
         // The direction in the leaning disc's plane that is farthest along the tilted normal: that normal without
         // its part along the axis of the disc.
@@ -505,7 +541,7 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
             let in_plane = tilt - lean * down;
             in_plane / (in_plane.norm_squared() + down * down).sqrt()
         };
-        let [first, second, third, fourth] = TILT_DIRECTIONS.map(outwards);
+        let [first, second, third, fourth] = out.map(outwards);
         let (span, chord) = (first - third, offset(c, a));
         let span2 = span.norm_squared();
         // For corners of other faces the chord mostly has another direction.
@@ -521,45 +557,257 @@ impl<'q, A: SupportMap, B: SupportMap, const N: usize> FeatureQuery<'q, A, B, N>
         let is_there = |out, found: &Vec3| {
             let error = on_rim(out) - found;
             let tolerance = RIM_REL_TOL * radius;
-            error.xy().norm_squared() <= tolerance * tolerance && error.z.abs() <= FACE_DROP_TOL
+            error.xy().norm_squared() <= tolerance * tolerance && error.z.abs() <= SAME_DROP_TOL
         };
         // False for NaN.
         let is_rim = radius > 2.0 * self.vertex_offset
             && is_there(second, b)
             && is_there(third, c)
             && is_there(fourth, d);
-        is_rim.then(|| DIAGONALS.map(|out| on_rim(outwards(out))))
+        is_rim.then(|| [0, 1, 2, 3].map(|k| on_rim(outwards((out[k] + out[(k + 1) % 4]) * H))))
     }
 }
 
-impl Feature {
-    /// Makes a queried vertex the prediction of each direction not yet queried along which it is farther.
-    #[inline(always)]
-    fn improve_predictions(&mut self, v: &Vec3, scores: &[f64; 4], is_queried: &[bool; 4]) {
-        for k in 0..4 {
-            if !is_queried[k] && scores[k] > self.scores[k] {
-                (self.scores[k], self.vertices[k], self.cover[k]) = (scores[k], *v, 0.0);
+/// Returns for both objects whether different directions returned the same vertex.
+#[inline(always)]
+fn have_repeated_vertex(known: &[KnownPair], same: f64, turned: f64) -> [bool; 2] {
+    let mut repeated = [0_u64; 2];
+    for (i, v) in known.iter().enumerate() {
+        for w in known.iter().take(i) {
+            let turn = larger((v.tilt[0] - w.tilt[0]).abs(), (v.tilt[1] - w.tilt[1]).abs());
+            let limit = if turn > turned { same } else { -1.0 };
+            for (k, repeated) in repeated.iter_mut().enumerate() {
+                let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
+                *repeated |= u64::from(distance <= limit);
             }
+        }
+    }
+    repeated.map(|n| n > 0)
+}
+
+/// Returns a vertex moved along unit `out`.
+#[inline(always)]
+fn moved(v: &Vec3, out: Vec2, distance: f64) -> Vec3 {
+    Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z)
+}
+
+/// The vertices seen of one object: known ones and those queried for its feature.
+struct Seen<'q> {
+    known: &'q [KnownPair],
+    object: usize,
+    queried: [Vec3; Seen::MAX_QUERIED],
+    len: usize,
+}
+
+impl Seen<'_> {
+    /// Number of queried vertices that are kept; later ones are queried again if needed.
+    const MAX_QUERIED: usize = 8;
+
+    /// Appends a queried vertex.
+    #[inline(always)]
+    fn push(&mut self, v: Vec3) {
+        if let Some(end) = self.queried.get_mut(self.len) {
+            *end = v;
+            self.len += 1;
+        }
+    }
+
+    /// Returns the queried vertices.
+    #[inline(always)]
+    fn queried(&self) -> &[Vec3] {
+        self.queried.get(..self.len).unwrap_or(&[])
+    }
+
+    /// Returns the vertices of greatest height along ±e1 and ±e2; the deepest point if none is known.
+    #[inline(always)]
+    fn extremes(&self, depth_over_tilt: f64) -> [Vec3; 4] {
+        // The index of a vertex is in the low bits of its height, so that the maximum carries it.
+        const MASK: u64 = (MAX_KNOWN + Seen::MAX_QUERIED).next_power_of_two() as u64 - 1;
+        let mut best = [f64::NEG_INFINITY; 4];
+        let mut compare = |i: usize, v: &Vec3| {
+            let fall = v.z * depth_over_tilt;
+            let heights = [v.x - fall, v.y - fall, -v.x - fall, -v.y - fall];
+            for j in 0..4 {
+                let height = f64::from_bits(heights[j].to_bits() & !MASK | i as u64);
+                best[j] = larger(height, best[j]);
+            }
+        };
+        for (i, pair) in self.known.iter().enumerate() {
+            compare(i, &pair.vertex(self.object));
+        }
+        for (i, v) in self.queried().iter().enumerate() {
+            compare(MAX_KNOWN + i, v);
+        }
+        best.map(|height| {
+            let i = (height.to_bits() & MASK) as usize;
+            match self.known.get(i) {
+                Some(pair) => pair.vertex(self.object),
+                None => *self.queried.get(i.wrapping_sub(MAX_KNOWN)).unwrap_or(&ZERO),
+            }
+        })
+    }
+
+    /// Returns the vertex of greatest height along `out`, if that is more than `least`.
+    #[inline(always)]
+    fn highest(&self, out: Vec2, depth_over_tilt: f64, least: f64) -> Option<Vec3> {
+        let (mut highest, mut found) = (least, None);
+        let mut compare = |v: Vec3| {
+            let height = out.dot(&v.xy()) - v.z * depth_over_tilt;
+            if height > highest {
+                (highest, found) = (height, Some(v));
+            }
+        };
+        for pair in self.known {
+            compare(pair.vertex(self.object));
+        }
+        self.queried().iter().for_each(|v| compare(*v));
+        found
+    }
+
+    /// Returns whether one of the newest `count` vertices was seen before.
+    #[inline(always)]
+    fn has_repeated(&self, count: usize, same: f64) -> bool {
+        let (old, new) = self.queried().split_at(self.len.saturating_sub(count));
+        let is_new = |v: &Vec3| new.iter().any(|w| is_within(v, w, same));
+        old.iter().any(is_new)
+            || self
+                .known
+                .iter()
+                .any(|pair| is_new(&pair.vertex(self.object)))
+    }
+}
+
+/// The corners of a polytope found so far, counterclockwise.
+#[derive(Default)]
+struct Polygon {
+    corners: [Vec3; MAX_CORNERS],
+    /// Whether there is no corner beyond the side from each corner to the next.
+    is_closed: [bool; MAX_CORNERS],
+    len: usize,
+}
+
+impl Polygon {
+    /// Appends a corner unless it is the last or the first one.
+    #[inline(always)]
+    fn push_distinct(&mut self, v: &Vec3, same: f64) {
+        let n = self.len % MAX_CORNERS;
+        let last = n.saturating_sub(1);
+        let is_old =
+            is_within(v, &self.corners[last], same) || is_within(v, &self.corners[0], same);
+        if n == 0 || !is_old {
+            self.corners[n] = *v;
+            self.len = n + 1;
+        }
+    }
+
+    /// Returns the ends of side `i`, modulo the number of corners, for `i` below twice that.
+    #[inline(always)]
+    fn side(&self, i: usize) -> [&Vec3; 2] {
+        let i = if i < self.len { i } else { i - self.len };
+        let next = if i + 1 < self.len { i + 1 } else { 0 };
+        [i, next].map(|i| &self.corners[i.min(MAX_CORNERS - 1)])
+    }
+
+    /// Returns the longest side that is not closed and at least partly in the overlap.
+    #[inline(always)]
+    fn longest_open_side(&self, least2: f64) -> Option<usize> {
+        let (mut longest, mut found) = (least2, None);
+        for i in 0..self.len.min(MAX_CORNERS) {
+            let [p, q] = self.side(i);
+            let length2 = offset(p, q).norm_squared();
+            if length2 > longest && !self.is_closed[i] && (p.z < 1.0 || q.z < 1.0) {
+                (longest, found) = (length2, Some(i));
+            }
+        }
+        found
+    }
+
+    /// Returns whether a vertex is a corner.
+    #[inline(always)]
+    fn has(&self, v: &Vec3, same: f64) -> bool {
+        let mut corners = self.corners.iter().take(self.len);
+        corners.any(|corner| is_within(corner, v, same))
+    }
+
+    /// Inserts a corner beyond a side.
+    #[inline(always)]
+    fn insert(&mut self, side: usize, v: &Vec3) {
+        let mut i = self.len.min(MAX_CORNERS - 1);
+        while i > side + 1 {
+            (self.corners[i], self.is_closed[i]) = (self.corners[i - 1], self.is_closed[i - 1]);
+            i -= 1;
+        }
+        (self.corners[i], self.is_closed[i]) = (*v, false);
+        self.is_closed[side % MAX_CORNERS] = false;
+        self.len += 1;
+    }
+
+    /// Removes a corner.
+    #[cold]
+    #[inline(never)]
+    fn remove(&mut self, i: usize) {
+        let i = i % self.len.max(1);
+        if let Some(corners) = self.corners.get_mut(i..) {
+            corners.rotate_left(1);
+        }
+        if let Some(closed) = self.is_closed.get_mut(i..) {
+            closed.rotate_left(1);
+        }
+        self.len -= 1;
+        let last = (i + self.len).saturating_sub(1) % self.len.max(1);
+        self.is_closed[last % MAX_CORNERS] = false;
+    }
+
+    /// Returns whether four corners are a parallelogram, in space too.
+    #[inline(always)]
+    fn is_parallelogram(&self, tolerance: f64) -> bool {
+        let [a, b, c, d, ..] = &self.corners;
+        let gap = a + c - b - d;
+        gap.xy().norm_squared() < tolerance * tolerance && gap.z.abs() < SAME_DROP_TOL
+    }
+
+    /// Makes the fan of the corners, each moved outwards; of an edge, its ends also to both sides.
+    #[inline(always)]
+    fn write_fan(&self, fan: &mut Fan, distance: f64) {
+        let corners = self.corners.get(..self.len).unwrap_or(&[]);
+        fan.len = 0;
+        if let [a, b] = corners {
+            let along = offset(a, b);
+            let out = four_directions(along * (1.0 / along.norm()));
+            for (v, k) in [(a, 2), (a, 3), (b, 0), (b, 1)] {
+                fan.push(moved(v, out[k], distance));
+            }
+            return;
+        }
+        let mean = corners.iter().sum::<Vec3>() * (1.0 / corners.len() as f64);
+        for v in corners {
+            let out = offset(&mean, v);
+            let norm2 = larger(out.norm_squared(), f64::MIN_POSITIVE);
+            fan.push(moved(v, out, distance / norm2.sqrt()));
         }
     }
 }
 
+/// The vertices of a feature, counterclockwise around the deepest point.
+#[derive(Clone, Copy, Debug)]
+pub struct Fan {
+    /// `vertices[len]` repeats the first one.
+    pub vertices: [Vec3; Fan::CAPACITY],
+    pub len: usize,
+    /// True if opposite vertices are symmetric about the deepest point.
+    pub is_symmetric: bool,
+}
+
 impl Fan {
-    /// Largest number of vertices: eight of a disc or five corners, two that enclose the deepest point, and the
+    /// Largest number of vertices: eight of a disc or a polygon, two that enclose the deepest point, and the
     /// repeated first one.
-    pub const CAPACITY: usize = 11;
+    pub const CAPACITY: usize = MAX_CORNERS + 3;
     /// The fan without vertices.
     pub const EMPTY: Self = Self {
         vertices: [ZERO; Self::CAPACITY],
-        areas: [0.0; Self::CAPACITY],
         len: 0,
+        is_symmetric: false,
     };
-
-    /// Returns vertex `i` modulo the number of vertices.
-    #[inline(always)]
-    fn cyclic_vertex(&self, i: usize) -> Vec3 {
-        self.vertices[(i % self.len.max(1)).min(Self::CAPACITY - 1)]
-    }
 
     /// Appends a vertex; a full fan ignores it.
     #[inline(always)]
@@ -570,82 +818,100 @@ impl Fan {
         }
     }
 
-    /// Inserts a vertex at index `i`.
-    fn insert(&mut self, i: usize, v: Vec3) {
-        self.push(v);
-        let mut moved = v;
-        for vertex in self.vertices.iter_mut().take(self.len).skip(i) {
-            core::mem::swap(vertex, &mut moved);
-        }
-    }
-
-    /// Repeats the first vertex and computes the areas. Returns whether the deepest point is inside.
+    /// Repeats the first vertex.
     #[inline(always)]
-    pub fn compute_areas(&mut self) -> bool {
-        let len = self.len.min(Self::CAPACITY - 1);
-        self.vertices[len] = self.vertices[0];
-        let mut least = f64::INFINITY;
-        for i in 0..len {
-            self.areas[i] = area2(&self.vertices[i], &self.vertices[i + 1]);
-            least = lesser(self.areas[i], least);
-        }
-        least > 0.0
+    pub fn close(&mut self) {
+        self.vertices[self.len.min(Self::CAPACITY - 1)] = self.vertices[0];
     }
 
-    /// Makes a fan contain the deepest point that does not: reverses it if it is clockwise, and else extends it.
-    /// Returns false if it is neither.
+    /// Returns twice the area of the triangle of the deepest point, vertex `i` and the next one.
+    #[inline(always)]
+    pub fn area(&self, i: usize) -> f64 {
+        let i = i.min(Self::CAPACITY - 2);
+        area2(&self.vertices[i], &self.vertices[i + 1])
+    }
+
+    /// Returns whether the vertices are once around the deepest point, counterclockwise.
+    #[inline(always)]
+    pub fn contains_deepest_point(&self) -> bool {
+        let mut turns = 0;
+        let mut is_inside = true;
+        for i in 0..self.len.min(Self::CAPACITY - 1) {
+            is_inside &= self.area(i) > 0.0;
+            turns += usize::from(self.vertices[i].y < 0.0 && self.vertices[i + 1].y >= 0.0);
+        }
+        is_inside && turns == 1
+    }
+
+    /// Orders the vertices around the deepest point and, if it is outside, adds a vertex at `distance` behind it. Returns
+    /// false if there is no area.
     ///
-    /// The support vertices of the four tilted directions are counterclockwise around a face, but not always around
-    /// an edge: the vertex along an axis may be high, in place of one farther along it and lower.
+    /// The vertices are mostly in order, but not always around an edge: the vertex along a direction may be high, in
+    /// place of one farther along it and lower.
     #[cold]
     #[inline(never)]
     fn enclose_deepest_point(&mut self, distance: f64) -> bool {
-        let reversed = |fan: &mut Self| {
-            if let Some(vertices) = fan.vertices.get_mut(..fan.len) {
-                vertices.reverse();
-            }
-            fan.compute_areas()
+        let is_before = |a: &Vec3, b: &Vec3| {
+            let half = |v: &Vec3| u8::from(v.y < 0.0 || v.y == 0.0 && v.x < 0.0);
+            half(a) < half(b) || half(a) == half(b) && area2(a, b) > 0.0
         };
-        if reversed(self) {
-            return true;
+        let n = self.len.min(Self::CAPACITY - 2);
+        for end in 1..n {
+            let mut i = end;
+            while i > 0 && is_before(&self.vertices[i], &self.vertices[i - 1]) {
+                self.vertices.swap(i, i - 1);
+                i -= 1;
+            }
         }
-        reversed(self);
-        self.extend_to_deepest_point(distance)
+        self.len = n;
+        self.close();
+        let is_gap = |i: &usize| {
+            let (p, q) = (&self.vertices[*i], &self.vertices[i + 1]);
+            let area = area2(p, q);
+            area < 0.0 || area == 0.0 && p.xy().dot(&q.xy()) <= 0.0
+        };
+        if let Some(i) = (0..n).find(is_gap) {
+            let (p, q) = (&self.vertices[i], &self.vertices[i + 1]);
+            // Opposite to the bisector of the directions to p and q, also if both are on one side.
+            let [a, b] = [p, q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
+            let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
+            let scale = distance / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
+            let behind = Vec3::new(x * scale, y * scale, 0.0);
+            self.vertices[i + 1..].rotate_right(1);
+            self.vertices[i + 1] = behind;
+            self.len = n + 1;
+            self.close();
+        }
+        let mut i = 0;
+        while i < self.len && self.len > 2 {
+            if self.is_dent(i) {
+                self.vertices[i..].rotate_left(1);
+                self.len -= 1;
+                self.close();
+                i = 0;
+            } else {
+                i += 1;
+            }
+        }
+        self.len > 2
     }
 
-    /// Extends the fan to contain the deepest point, which is outside: removes the sides visible from it and adds a
-    /// vertex at `distance` behind it. Returns false if the result does not contain it.
-    fn extend_to_deepest_point(&mut self, distance: f64) -> bool {
-        let n = self.len.clamp(1, Self::CAPACITY - 1);
-        let is_visible = |i: usize| !(self.areas[(i % n).min(Self::CAPACITY - 1)] > 0.0);
-        let first = (0..n).find(|i| !is_visible(*i) && is_visible(i + n - 1));
-        let first = first.unwrap_or(0);
-        let mut fan = Self::EMPTY;
-        let kept = (0..n).find(|k| is_visible(first + k)).unwrap_or(n);
-        for k in 0..=kept {
-            fan.push(self.cyclic_vertex(first + k));
-        }
-        let (p, q) = (self.cyclic_vertex(first + kept), self.cyclic_vertex(first));
-        // Opposite to the bisector of the directions to p and q, also if both are on one side.
-        let [a, b] = [&p, &q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
-        let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
-        let scale = distance / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
-        fan.push(Vec3::new(x * scale, y * scale, 0.0));
-        fan.compute_areas();
-        let min_area = MIN_AREA_REL * distance * distance;
-        let mut is_inside = fan.len > 2;
-        for area in fan.areas.iter_mut().take(fan.len) {
-            // Never 0, because areas are divisors.
-            is_inside &= *area > -min_area;
-            *area = larger(*area, min_area);
-        }
-        *self = fan;
-        is_inside
+    /// Returns whether a vertex is nearer than the line of its neighbours, and not higher than the plane of these and the
+    /// deepest point. (The object is convex, so the surface extends to that line.)
+    fn is_dent(&self, i: usize) -> bool {
+        let n = self.len;
+        let [p, v, q] = [i + n - 1, i, i + 1].map(|i| &self.vertices[i % n]);
+        let per_area = 1.0 / area2(p, q);
+        let (weight_p, weight_q) = (area2(v, q) * per_area, area2(p, v) * per_area);
+        per_area > 0.0
+            && weight_p + weight_q < 1.0
+            && weight_p * p.z + weight_q * q.z < v.z + SAME_DROP_TOL
     }
 
     /// Mirrors the fan through the deepest point.
+    #[inline(always)]
     pub fn mirror(&mut self) {
-        for v in &mut self.vertices {
+        for v in self.vertices.iter_mut().take(self.len + 1) {
             (v.x, v.y) = (-v.x, -v.y);
         }
     }
@@ -656,56 +922,35 @@ mod tests {
     use super::*;
     use crate::shapes::Random;
 
-    /// Tests that an extended fan contains the deepest point, from a triangle to a sliver that points at it: all
-    /// areas are positive.
+    /// Tests fans from a triangle to a sliver that points at the deepest point, and one in the wrong order: all areas
+    /// are positive once the deepest point is enclosed. A point has none.
     #[test]
-    fn extended_fan_contains_the_deepest_point() {
+    fn enclosed_fan_contains_the_deepest_point() {
         let mut r = Random::new(1);
         for round in 0..1000 {
             let width = 10.0_f64.powf(-r.within(0.0, 4.0));
-            let corners = [
+            let mut corners = vec![
                 (2.0, width),
                 (1.0, -width),
                 (3.0, -width * r.within(-0.4, 0.9)),
             ];
+            if round % 2 == 0 {
+                corners.extend([(-0.25, -0.061), (-0.05, -0.3)]);
+            }
             let (sin, cos) = r.within(0.0, core::f64::consts::TAU).sin_cos();
             let mut fan = Fan::EMPTY;
-            for (x, y) in [corners[0], corners[1], corners[2]] {
+            for (x, y) in corners {
                 let (x, y) = (x * cos - y * sin, x * sin + y * cos);
                 fan.push(Vec3::new(x, y, 0.0));
             }
-            assert!(!fan.compute_areas());
-            assert!(fan.extend_to_deepest_point(1e-3));
-            assert!(
-                fan.areas[..fan.len]
-                    .iter()
-                    .all(|a| *a > MIN_AREA_REL * 1e-6),
-                "{round} {fan:?}"
-            );
+            fan.close();
+            assert!(!fan.contains_deepest_point());
+            assert!(fan.enclose_deepest_point(1e-3));
+            assert!(fan.contains_deepest_point(), "{round} {fan:?}");
         }
-    }
-
-    /// Tests the fan of an edge whose middle is higher than its ends, a clockwise one, and one without area.
-    #[test]
-    fn clockwise_fan_is_reversed() {
-        let ends = [
-            (0.17, 0.074),
-            (0.06, 0.014),
-            (-0.25, -0.061),
-            (-0.05, -0.011),
-        ];
-        let mut fan = Fan::EMPTY;
-        for (x, y) in ends {
-            fan.push(Vec3::new(x, y, 0.0));
-        }
-        assert!(!fan.compute_areas() && fan.enclose_deepest_point(1e-3));
-        let areas = &fan.areas[..fan.len];
-        assert!(
-            areas.len() == 4 && areas.iter().all(|a| *a > 0.0),
-            "{fan:?}"
-        );
         let mut point = Fan::EMPTY;
-        (0..4).for_each(|_| point.push(Vec3::x()));
-        assert!(!point.compute_areas() && !point.enclose_deepest_point(1e-3));
+        point.push(Vec3::x());
+        point.close();
+        assert!(!point.enclose_deepest_point(1e-3));
     }
 }

@@ -138,6 +138,22 @@ impl<const N: usize> VertexSet<N> {
         self.coords.each_ref().map(|coords| coords[i])
     }
 
+    /// Returns the directions of the entries from index `first` on.
+    #[inline(always)]
+    pub fn dirs_from(&self, first: usize) -> &[Vec3] {
+        self.dirs.get(first..self.len).unwrap_or(&[])
+    }
+
+    /// Returns the coordinates of the entries from index `first` on, like [`VertexSet::coords`].
+    #[inline(always)]
+    pub fn coords_from(&self, first: usize) -> impl Iterator<Item = [[f64; 2]; 3]> + '_ {
+        let [x, y, z] = self
+            .coords
+            .each_ref()
+            .map(|coords| coords.get(first..self.len).unwrap_or(&[]));
+        x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z])
+    }
+
     /// Returns the vertex of obj1 of an entry.
     #[inline(always)]
     pub fn vertex1(&self, i: usize) -> Vec3 {

@@ -60,6 +60,11 @@ fn pos_is_near_both_objects() {
 }
 
 #[test]
+fn pos_is_that_of_the_whole_face() {
+    strict(program("tests/extension/faces.c")).build().run(["30"]);
+}
+
+#[test]
 fn contacts_are_exact() {
     strict(program("tests/extension/contacts.c")).build().run([one_in(10)]);
 }
