@@ -53,6 +53,7 @@ use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportS
 use crate::minkowski::tolerance::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
+use crate::trace;
 use crate::types::{Penetration, Settings, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
@@ -253,6 +254,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
     fn run(&mut self, start: &Vec3, is_remembered: bool) -> Result<Minimum, WalkEnd> {
+        trace::stage("local search");
         let first = self.query.evaluate_first(start, is_remembered)?;
         self.set.push(&self.query.upper.dir, &first);
         let has_center = self.query.interior.is_some();
@@ -581,6 +583,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         directions: &[Vec3],
         tolerance: f64,
     ) -> Result<bool, WalkEnd> {
+        trace::stage("confirmation");
         let (before, before_len) = (self.query.upper.depth, self.set.len());
         let center_tolerance = self.center_tolerance(tolerance);
         let narrow = 2.5 * TILT_RAD;

@@ -29,6 +29,7 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::{GapLimit, KNOWN_LEVEL};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
+use crate::trace;
 
 /// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
 /// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
@@ -76,6 +77,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     gap: f64,
     ring_tilt: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
+    trace::stage("discovery");
     let mut v1 = set.farthest_vertex(ray);
     let mut v2: Option<Vertex> = None;
     // Perpendicular to the ray, from v1 or from the edge v1 v2 to it.
@@ -185,6 +187,7 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     ray: &Vec3,
     tilt: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
+    trace::stage("ring");
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
@@ -246,6 +249,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     portal: &mut [Vertex; 3],
     limit: &GapLimit,
 ) -> Result<(), Stop> {
+    trace::stage("refinement");
     let mut along_normal = false;
     for _ in 0..MAX_STEPS {
         let normal = (portal[1].w - portal[0].w).cross(&(portal[2].w - portal[0].w));

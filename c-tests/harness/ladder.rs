@@ -7,9 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules, from the bottom to the top.
-const MODULES: [&str; 13] = [
+const MODULES: [&str; 14] = [
     "math",
     "types",
+    "trace",
     "geometry",
     "minkowski",
     "portal",

@@ -253,3 +253,17 @@ fn written_cases_replay() {
     let stdout = harness::must_succeed(replay.arg(&kept[0]), "replay.sh").stdout;
     assert!(stdout.contains("== libccd: ") && stdout.contains("== this library"), "{stdout}");
 }
+
+/// The trace of a kept case has a line for each support point, and the end with bounds that have met.
+#[test]
+fn a_trace_shows_every_direction_and_the_end() {
+    let dir = tempfile::tempdir().expect("a directory");
+    screen("plain", &["--every", "1", "--keep", dir.path().to_str().expect("a path")]);
+    let mut replay = Command::new("sh");
+    replay.arg(root().join("c-tests/replay.sh")).arg("--trace").arg(dir.path().join("libccd-1.c"));
+    let trace = harness::must_succeed(&mut replay, "replay.sh").stderr;
+    let directions: Vec<_> = trace.lines().filter(|line| line.contains("  bounds ")).collect();
+    assert!(directions.len() >= 4 && directions[0].starts_with("start "), "{trace}");
+    assert!(directions.iter().all(|line| line.contains(" dir ") && line.contains("  h ")), "{trace}");
+    assert!(trace.lines().any(|line| line.starts_with("end ") && line.contains("Converged, bounds ")), "{trace}");
+}

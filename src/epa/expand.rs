@@ -28,13 +28,14 @@
 
 use crate::epa::polytope::EpaPolytope;
 use crate::geometry::barycentric::triangle;
-use crate::math::{Vec3, lesser};
+use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::portal::is_shallow;
+use crate::trace;
 use crate::types::Settings;
 
 /// The fraction of the gap between the closest face and the upper bound that a known difference must close to
@@ -178,6 +179,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     limits: &EpaLimits,
     has_larger: bool,
 ) -> Result<ExpandEnd, Stop> {
+    trace::stage("expansion");
     // The key of the closest face when a fit's direction found nothing above it.
     let mut last_failed_key = -1.0;
     // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
@@ -194,6 +196,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let target = upper - allowed + lesser(error, 0.5 * allowed);
         let target_key = target * target.abs();
         let is_inside = closest.key >= 0.0;
+        trace::lower_bound(larger(closest.key, 0.0).sqrt());
         if is_inside && closest.key >= target_key {
             if polytope.refresh_keys(target_key) {
                 continue;

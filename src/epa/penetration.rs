@@ -43,6 +43,7 @@ use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::{WarmKind, WarmStart};
 use crate::portal::{discover, refine};
+use crate::trace;
 use crate::types::{Penetration, Status};
 
 /// The limit of support points of a default query, up to the end of its polytope.
@@ -276,6 +277,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<N>,
         ray: &mut Vec3,
     ) -> Result<(Vec3, SupportPoint), Stop> {
+        trace::stage("interior point");
         let newest = set.point(VertexSet::<N>::pair_of_entry(set.len().saturating_sub(1)));
         let sample = self.query.evaluate(set, &-*ray)?;
         let index = usize::from(sample.pair.a);
@@ -363,6 +365,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         corners: &[Vertex; 3],
         normal: &Vec3,
     ) -> Result<(), Stop> {
+        trace::stage("warm refinement");
         let upper = &self.query.upper;
         let predicted = match self.fit.is_confirmed {
             true => self.fit.predict(set, corners, &upper.dir),
@@ -513,6 +516,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
     ) -> Result<Option<Start>, Stop> {
+        trace::stage("farthest points");
         let interior = self.interior_vertex();
         let mut found = [interior; 4];
         let c = interior.w;

@@ -28,6 +28,7 @@ use crate::minkowski::support_query::SupportQuery;
 use crate::minkowski::tolerance::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
+use crate::trace;
 use crate::types::Status;
 
 /// Largest tangent of the angle between a queried direction and the normal of the best plane. Measured on nine
@@ -136,6 +137,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
 
     /// Runs the search.
     fn run(&mut self, goal: &Goal, start: &Vec3, is_remembered: bool) -> Result<Status, Fault> {
+        trace::stage("closest points");
         let first = self
             .query
             .evaluate_signed_first(&mut self.set, start, is_remembered)?

@@ -30,6 +30,7 @@ use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
+use crate::trace;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
@@ -144,6 +145,7 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     from: &SupportPoint,
     dir: &Vec3,
 ) -> Result<SupportPoint, Stop> {
+    trace::stage("interior point");
     let far = query.evaluate(set, dir)?;
     let far = set.point(far.pair);
     let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
@@ -167,6 +169,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     inner: &Vec3,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
+    trace::stage("enclosing portal");
     let distance = inner.norm();
     if !(distance > query.scale.contact_eps()) {
         return Ok(None);
@@ -217,6 +220,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
     dir: &Vec3,
     is_planar: bool,
 ) -> Result<Enclosing, Stop> {
+    trace::stage("GJK");
     const { assert!(N >= CAPACITY) };
     let mut dir = *dir;
     let mut simplex = interior.map_or(Simplex::EMPTY, |point| Simplex::of_interior(&point.v));

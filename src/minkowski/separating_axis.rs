@@ -21,6 +21,7 @@
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
+use crate::trace;
 
 /// Number of axes evaluated before the pair is queried as if it were new.
 const MAX_TRIES: u32 = 2;
@@ -51,10 +52,12 @@ impl SeparatingAxis {
         &mut self,
         query: &mut SupportQuery<'_, A, B>,
     ) -> Result<Option<Vec3>, Fault> {
+        trace::stage("separating axis");
         for _ in 0..MAX_TRIES {
             let n = self.dir;
             let point = query.evaluate_point(&n)?;
             let separation = -n.dot(&point.v);
+            trace::direction(&n, -separation, query.upper.depth);
             // NaN counts as separated.
             let is_separated = !query.scale.is_depth(-separation);
             let least = if is_separated {

@@ -21,11 +21,12 @@
 //! an evaluated support plane, a center is outside its object: [`SupportQuery::interior`] becomes `None`, and
 //! results that are based on it are discarded. Only evaluated directions can detect this.
 
-use crate::math::{Vec3, from_real, larger, to_real};
+use crate::math::{Vec3, from_real, larger, lesser, to_real};
 use crate::minkowski::general_position::{tilt_rad, tilted};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::{KNOWN_LEVEL, Scale};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
+use crate::trace;
 
 /// Reason why an evaluation of the support function ends the query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,6 +159,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
             let plane = SupportPlane { dir, depth, point };
             SupportPlane { dir, depth, point } = self.evaluate_untilted(n, plane)?;
         }
+        trace::direction(&dir, depth, lesser(depth, self.upper.depth));
         Ok(SupportPlane { dir, depth, point })
     }
 

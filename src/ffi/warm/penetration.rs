@@ -13,6 +13,7 @@ use crate::math::{Real, Vec3, lower_to_real};
 use crate::minkowski::support_query::{Stop, if_overlapping};
 use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
+use crate::trace;
 use crate::types::{Penetration, Settings, Status};
 
 /// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
@@ -114,8 +115,10 @@ pub(in crate::ffi) unsafe fn run_query(
         with_state(warm, |state| {
             let mut hit = Penetration::default();
             if if_overlapping(solve(&pair, state, &settings, &mut hit))?.is_none() {
+                trace::end(None);
                 return Ok(CCD_MISS);
             }
+            trace::end(Some(&hit));
             write_hit(&hit, pair.difference.supports());
             Ok(match hit.status {
                 Status::Converged => CCD_HIT,
