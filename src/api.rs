@@ -236,8 +236,8 @@ pub struct Penetration {
     pub normal: [Real; 3],
     /// Contact position, [`Want::pos`]: the center of pressure, an estimate of the centroid of the
     /// overlap volume, projected along `normal` to the plane midway between the two support planes.
-    /// Continuous in the pose. If `status` is not converged, and in [`penetration_along`] and
-    /// [`penetration_planar`], the middle of the witness points.
+    /// If `status` is not converged, and in [`penetration_along`] and [`penetration_planar`], the middle of the witness
+    /// points.
     pub pos: [Real; 3],
     /// Witness point of the first shape, [`Want::points`]: in the shape and on its support plane,
     /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).

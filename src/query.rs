@@ -11,14 +11,14 @@
 //! 3. *Overlap*: a local minimum of the support function can be positive though the objects are separated,
 //!    e.g. for a thin plate with the object on its far side. Therefore the solvers of local minima prove the overlap
 //!    separately ([`contains_origin`]); the certificate of the global minimum implies it.
-//! 4. *Contact position*: compute the [`center_of_pressure`], or take the middle of the witness points.
+//! 4. *Contact position*: compute the [`contact_position`], or take the middle of the witness points.
 //! 5. *Warm start state*: store it in the [`WarmStart`], if the caller keeps one.
 //!
 //! `include/README.md` has the outputs of each query. All assume valid support functions ([`crate::types`]).
 
 pub mod signed_distance;
 
-use crate::contact::center_of_pressure::center_of_pressure;
+use crate::contact::center_of_pressure::contact_position;
 use crate::epa::penetration::{Arena, EpaRequest, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
@@ -375,7 +375,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(is_minimum)
     }
 
-    /// Returns the center of pressure of a hit. `set`: the known vertices of its search.
+    /// Returns the contact position of a hit. `set`: the known vertices of its search.
     #[inline(always)]
     pub fn contact_position<const N: usize>(
         &self,
@@ -383,7 +383,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &Penetration,
         tolerance: f64,
     ) -> Result<Vec3, Fault> {
-        center_of_pressure(&self.difference, set, hit, self.centers.as_ref(), tolerance)
+        contact_position(&self.difference, set, hit, self.centers.as_ref(), tolerance)
     }
 }
 

@@ -53,18 +53,62 @@ use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportP
 use crate::minkowski::vertex_set::VertexSet;
 use crate::types::Penetration;
 
+/// Depths, relative to the sum of both objects' extents from their centers along n, from which on the deep position counts,
+/// and from which on it alone does. Measured against the centroid of the overlap: at 0.2 the center of pressure is 4 % of
+/// the size closer (root mean square, boxes, hulls, curved bodies), at 0.4 both are 9 to 14 % off, at 0.55 the deep position
+/// is 3 % closer.
+const DEEP_RANGE: [f64; 2] = [0.2, 0.4];
 /// The assumed slope of flanks. Insensitive: 2 to 8 tried.
 const FLANK_SLOPE: f64 = 4.0;
 /// Least length of a side of the outline, in vertex offsets; shorter ones are skipped.
 const MIN_SIDE_OFFSETS: f64 = 6.0;
 
-/// Returns the center of pressure of a hit, midway between the support planes. `set`: the known vertices of the
-/// search.
+/// Returns the contact position of a hit: the center of pressure of a shallow one, the deep position of a deep one, and a
+/// mean of both between. `set`: the known vertices of the search.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
 #[inline(never)]
-pub fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
+pub fn contact_position<A: SupportMap, B: SupportMap, const N: usize>(
+    md: &MinkowskiDifference<A, B>,
+    set: &VertexSet<N>,
+    hit: &Penetration,
+    centers: Option<&SupportPoint>,
+    tolerance: f64,
+) -> Result<Vec3, Fault> {
+    let (deep, share) = centers.map_or((Vec3::zeros(), 0.0), |c| deep_position(hit, c));
+    if share == 1.0 {
+        return Ok(deep);
+    }
+    let center = center_of_pressure(md, set, hit, centers, tolerance)?;
+    Ok(center + (deep - center) * share)
+}
+
+/// Returns a position for deep hits, at no support point, and its share in the contact position.
+///
+/// The segment from the difference of the centers to the foot, depth · n, crosses the plane through the origin across n
+/// at the parameter t = depth / (depth − n · center): the depth relative to the sum of both objects' extents from their
+/// centers along n. The points at t of the segments from each center to its witness point lie in the objects; the
+/// position is midway between them. It counts where these points are closer than the depth, so that it is at most half the
+/// depth from both objects.
+#[inline(always)]
+fn deep_position(hit: &Penetration, centers: &SupportPoint) -> (Vec3, f64) {
+    let t = hit.depth / (hit.depth - hit.normal.dot(&centers.v));
+    let [from, to] = DEEP_RANGE;
+    // Negated for NaN.
+    if !(t > from && t <= 1.0) {
+        return (Vec3::zeros(), 0.0);
+    }
+    let one = hit.point1 + (centers.v1 - hit.point1) * t;
+    let two = hit.point2 + (centers.v2 - hit.point2) * t;
+    let apart = (one - two).norm() / hit.depth;
+    let share = lesser(lesser((t - from) / (to - from), 1.0), 2.0 - 2.0 * apart);
+    ((one + two) * 0.5, larger(share, 0.0))
+}
+
+/// Returns the center of pressure of a hit, midway between the support planes.
+#[inline(always)]
+fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
     md: &MinkowskiDifference<A, B>,
     set: &VertexSet<N>,
     hit: &Penetration,
@@ -429,7 +473,7 @@ mod tests {
             v2,
         };
         let before = md.supports();
-        let pos = center_of_pressure(&md, &set, &hit, Some(&centers), 1e-9).unwrap();
+        let pos = contact_position(&md, &set, &hit, Some(&centers), 1e-9).unwrap();
         (pos, md.supports() - before)
     }
 
@@ -499,7 +543,7 @@ mod tests {
             point2: Vec3::z() * 0.9,
             ..Penetration::default()
         };
-        let pos = center_of_pressure(&md, &set, &hit, None, 1e-9);
+        let pos = contact_position(&md, &set, &hit, None, 1e-9);
         assert_eq!(pos, Err(Fault::NonFinite));
     }
 }

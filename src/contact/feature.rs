@@ -578,7 +578,7 @@ fn have_repeated_vertex(known: &[KnownPair], same: f64, turned: f64) -> [bool; 2
             let limit = if turn > turned { same } else { -1.0 };
             for (k, repeated) in repeated.iter_mut().enumerate() {
                 let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
-                *repeated |= u64::from(distance <= limit);
+                *repeated |= u64::from(distance <= limit) & u64::from(v.drop[k] <= 1.0);
             }
         }
     }
