@@ -10,6 +10,7 @@
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
+//! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
 //! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | digests that `cmake/packages/cross.sh` compares between processors | |
@@ -30,8 +31,10 @@ fn show(program: &Executable, given: &[String], defaults: &[&str]) {
     }
 }
 
-fn states() -> Executable {
-    let program = Program::c("warm_states").source("tests/extension/warm_states.c");
+/// Builds a program of another folder of tests, with this library alone.
+fn elsewhere(path: &str) -> Executable {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    let program = Program::c(name).source(format!("tests/{path}.c"));
     program.flag("-DOURS_ALONE").link_ours_shared().build()
 }
 
@@ -47,15 +50,16 @@ fn main() {
         "rates" => show(&program("campaign"), &given, &["2000"]),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         "wide" => show(&programs::alone("wide"), &given, &["1000", "-1", "0", "1"]),
-        "states" => show(&states(), &given, &["400", "1000000"]),
+        "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
+        "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]
         "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
         #[cfg(not(feature = "single"))]
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
-            eprintln!("usage: campaigns rates|wide|worst|states|truth|ledger|determinism [ARGUMENT...]");
+            eprintln!("usage: campaigns rates|wide|worst|states|touches|truth|ledger|determinism [ARGUMENT...]");
             std::process::exit(2);
         }
     }

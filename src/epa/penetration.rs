@@ -35,7 +35,7 @@ use crate::epa::expand::{EpaCorners, EpaLimits, ExpandEnd, exit_face, expand};
 use crate::epa::polytope::EpaPolytope;
 use crate::geometry::barycentric;
 use crate::geometry::plane::{PLANE_ERROR_ULPS, Tetrahedron, base_distance};
-use crate::gjk::intersect::{CAPACITY, contains_origin};
+use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
@@ -342,8 +342,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let tolerance = scale.tolerance(self.limits.gap.tolerance);
         let allowed = self.limits.gap.allowed(scale, self.query.upper.depth);
         let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
-        // A lower bound of 0 proves no overlap.
-        let least = larger(self.query.upper.depth - allowed, 0.0) + error;
+        // A lower bound of at most the contact epsilon proves no overlap.
+        let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
         let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
             return Ok(false);
         };
@@ -412,6 +412,9 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             if let Some(found) = found {
                 status = found;
                 if status != Status::Rounding {
+                    if !(self.hit.depth_lower > self.query.scale.contact_eps()) {
+                        self.prove_overlap()?;
+                    }
                     return Ok(status);
                 }
             }
@@ -567,6 +570,18 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(Some(found))
     }
 
+    /// Proves by GJK that the objects overlap by more than the contact epsilon.
+    ///
+    /// # Errors
+    /// As [`contains_origin`].
+    #[cold]
+    #[inline(never)]
+    fn prove_overlap(&mut self) -> Result<Enclosing, Stop> {
+        let mut known = VertexSet::<CAPACITY>::EMPTY;
+        let dir = self.query.upper.dir;
+        contains_origin(self.query, &mut known, None, &dir, false)
+    }
+
     /// Returns the tetrahedron with which GJK proves the overlap, if no polytope has come to contain the origin.
     #[cold]
     #[inline(never)]
@@ -574,9 +589,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
     ) -> Result<Option<Start>, Stop> {
-        let mut known = VertexSet::<CAPACITY>::EMPTY;
-        let dir = self.query.upper.dir;
-        let found = contains_origin(self.query, &mut known, None, &dir, false)?;
+        let found = self.prove_overlap()?;
         // The points need not be support points, so they are stored without a direction.
         Ok(Some(found.corners.map(|point| {
             let pair = VertexSet::<N>::pair_of_entry(set.push(&Vec3::zeros(), &point));

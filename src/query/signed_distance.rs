@@ -102,10 +102,10 @@ pub fn signed_distance<A: SupportMap, B: SupportMap>(
             return Ok(distance);
         }
         // The overlap test found no overlap. Use its axis, even if the support value there is positive within
-        // rounding, and keep the witness points.
+        // rounding, and keep the witness points, which are rounded too.
         let normal = state.dir;
         let h = normal.dot(&md.support(&normal)?.v);
-        contact_eps = larger(contact_eps, h.abs());
+        contact_eps = 2.0 * larger(contact_eps, h.abs());
         (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
         let is_met = cores.upper <= larger(contact_eps, wanted.settings.tolerance);
         cores.status = Status::Rounding.unless(is_met);

@@ -332,6 +332,11 @@ fn arguments() {
 }
 
 #[test]
+fn objects_that_touch_are_a_miss() {
+    on_this_library("touches").build().run([harness::rounds(20_000)]);
+}
+
+#[test]
 fn memory() {
     on_this_library("memory").without_tools().build().run(NO_ARGS);
 }
