@@ -526,6 +526,44 @@ mod tests {
         assert!(pos.x.abs() < 3e-3, "{pos:?}");
     }
 
+    /// Tests two boxes whose centers differ along the normal: the position is at no support point from a certain depth on,
+    /// and changes continuously up to there.
+    #[test]
+    fn deep_position_is_free() {
+        let cube = corners(Vec3::repeat(0.5));
+        let at = |depth: f64| {
+            let offset = Vec3::new(0.1, 0.05, 1.0 - depth);
+            let body = placed(&cube, &Rotation3::identity(), offset);
+            let md = difference(hull(&cube), hull(&body));
+            let mut set = VertexSet::<16>::EMPTY;
+            set.push(&Vec3::z(), &md.support(&Vec3::z()).unwrap());
+            let point = Vec3::new(0.05, 0.025, 0.5);
+            let hit = Penetration {
+                depth,
+                normal: Vec3::z(),
+                point1: point,
+                point2: point - Vec3::z() * depth,
+                ..Penetration::default()
+            };
+            let centers = SupportPoint {
+                v: -offset,
+                v1: Vec3::zeros(),
+                v2: offset,
+            };
+            let before = md.supports();
+            let pos = contact_position(&md, &set, &hit, Some(&centers), 1e-9).unwrap();
+            (pos, md.supports() - before)
+        };
+        let mut last = at(0.1).0;
+        for k in 0..1000 {
+            let depth = 0.1 + 0.5 * k as f64 / 1000.0;
+            let (pos, calls) = at(depth);
+            assert!((pos - last).norm() < 2e-3, "{depth}: {last} {pos}");
+            assert_eq!(calls == 0, depth >= 0.4, "{depth}");
+            last = pos;
+        }
+    }
+
     #[test]
     fn non_finite_point_is_a_fault() {
         let calls = core::cell::Cell::new(0);

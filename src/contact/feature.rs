@@ -359,7 +359,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             step += 1;
             match found.filter(|v| !polygon.has(v, same)) {
                 None => {
-                    polygon.is_closed[side] = is_side && !is_covered;
+                    polygon.is_closed[side % MAX_CORNERS] = is_side && !is_covered;
                     if n == 4 && polygon.is_parallelogram(SYMMETRY_REL_TOL * self.extent) {
                         break;
                     }
@@ -564,7 +564,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             && is_there(second, b)
             && is_there(third, c)
             && is_there(fourth, d);
-        is_rim.then(|| [0, 1, 2, 3].map(|k| on_rim(outwards((out[k] + out[(k + 1) % 4]) * H))))
+        is_rim.then(|| [0, 1, 2, 3].map(|k| on_rim(outwards((out[k % 4] + out[(k + 1) % 4]) * H))))
     }
 }
 
@@ -667,13 +667,12 @@ impl Seen<'_> {
     /// Returns whether one of the newest `count` vertices was seen before.
     #[inline(always)]
     fn has_repeated(&self, count: usize, same: f64) -> bool {
-        let (old, new) = self.queried().split_at(self.len.saturating_sub(count));
+        let end = self.len.saturating_sub(count);
+        let old = self.queried.get(..end).unwrap_or(&[]);
+        let new = self.queried.get(end..self.len).unwrap_or(&[]);
         let is_new = |v: &Vec3| new.iter().any(|w| is_within(v, w, same));
-        old.iter().any(is_new)
-            || self
-                .known
-                .iter()
-                .any(|pair| is_new(&pair.vertex(self.object)))
+        let mut known = self.known.iter();
+        old.iter().any(is_new) || known.any(|pair| is_new(&pair.vertex(self.object)))
     }
 }
 
@@ -746,15 +745,15 @@ impl Polygon {
     #[cold]
     #[inline(never)]
     fn remove(&mut self, i: usize) {
-        let i = i % self.len.max(1);
-        if let Some(corners) = self.corners.get_mut(i..) {
-            corners.rotate_left(1);
-        }
-        if let Some(closed) = self.is_closed.get_mut(i..) {
-            closed.rotate_left(1);
+        let removed = i % self.len.max(1);
+        for i in 1..MAX_CORNERS {
+            if i > removed {
+                self.corners[i - 1] = self.corners[i];
+                self.is_closed[i - 1] = self.is_closed[i];
+            }
         }
         self.len -= 1;
-        let last = (i + self.len).saturating_sub(1) % self.len.max(1);
+        let last = (removed + self.len).saturating_sub(1) % self.len.max(1);
         self.is_closed[last % MAX_CORNERS] = false;
     }
 
@@ -856,36 +855,41 @@ impl Fan {
             half(a) < half(b) || half(a) == half(b) && area2(a, b) > 0.0
         };
         let n = self.len.min(Self::CAPACITY - 2);
+        // Insertion sort.
         for end in 1..n {
-            let mut i = end;
-            while i > 0 && is_before(&self.vertices[i], &self.vertices[i - 1]) {
-                self.vertices.swap(i, i - 1);
-                i -= 1;
+            for i in (1..Self::CAPACITY).rev() {
+                if i <= end && is_before(&self.vertices[i], &self.vertices[i - 1]) {
+                    self.vertices.swap(i, i - 1);
+                }
             }
         }
         self.len = n;
         self.close();
         let is_gap = |i: &usize| {
-            let (p, q) = (&self.vertices[*i], &self.vertices[i + 1]);
+            let [p, q] = self.side(*i);
             let area = area2(p, q);
             area < 0.0 || area == 0.0 && p.xy().dot(&q.xy()) <= 0.0
         };
-        if let Some(i) = (0..n).find(is_gap) {
-            let (p, q) = (&self.vertices[i], &self.vertices[i + 1]);
+        if let Some(gap) = (0..n).find(is_gap) {
+            let [p, q] = self.side(gap);
             // Opposite to the bisector of the directions to p and q, also if both are on one side.
             let [a, b] = [p, q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
             let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
             let scale = distance / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
-            let behind = Vec3::new(x * scale, y * scale, 0.0);
-            self.vertices[i + 1..].rotate_right(1);
-            self.vertices[i + 1] = behind;
+            let mut behind = Vec3::new(x * scale, y * scale, 0.0);
+            let places = self.vertices.iter_mut().skip(gap + 1);
+            places.for_each(|place| core::mem::swap(place, &mut behind));
             self.len = n + 1;
             self.close();
         }
         let mut i = 0;
         while i < self.len && self.len > 2 {
             if self.is_dent(i) {
-                self.vertices[i..].rotate_left(1);
+                for k in 1..Self::CAPACITY {
+                    if k > i {
+                        self.vertices[k - 1] = self.vertices[k];
+                    }
+                }
                 self.len -= 1;
                 self.close();
                 i = 0;
@@ -896,11 +900,18 @@ impl Fan {
         self.len > 2
     }
 
+    /// Returns the ends of side `i`, below the length.
+    #[inline(always)]
+    fn side(&self, i: usize) -> [&Vec3; 2] {
+        let i = i.min(Self::CAPACITY - 2);
+        [&self.vertices[i], &self.vertices[i + 1]]
+    }
+
     /// Returns whether a vertex is nearer than the line of its neighbours, and not higher than the plane of these and the
     /// deepest point. (The object is convex, so the surface extends to that line.)
     fn is_dent(&self, i: usize) -> bool {
-        let n = self.len;
-        let [p, v, q] = [i + n - 1, i, i + 1].map(|i| &self.vertices[i % n]);
+        let [p, _] = self.side(if i > 0 { i - 1 } else { self.len - 1 });
+        let [v, q] = self.side(i);
         let per_area = 1.0 / area2(p, q);
         let (weight_p, weight_q) = (area2(v, q) * per_area, area2(p, v) * per_area);
         per_area > 0.0
