@@ -857,10 +857,13 @@ impl Fan {
         let n = self.len.min(Self::CAPACITY - 2);
         // Insertion sort.
         for end in 1..n {
-            for i in (1..Self::CAPACITY).rev() {
-                if i <= end && is_before(&self.vertices[i], &self.vertices[i - 1]) {
-                    self.vertices.swap(i, i - 1);
+            let mut i = end;
+            while i > 0 && i < Self::CAPACITY {
+                if !is_before(&self.vertices[i], &self.vertices[i - 1]) {
+                    break;
                 }
+                (self.vertices[i], self.vertices[i - 1]) = (self.vertices[i - 1], self.vertices[i]);
+                i -= 1;
             }
         }
         self.len = n;
