@@ -247,7 +247,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Improves an uncertified depth by a local search from its direction, to a hundredth of the tolerance. If the
     /// minimum is not unique, a polytope may not certify it within the limits, and the upper bound may exceed it
     /// by more than the tolerance; but the direction of the upper bound is close to a minimum.
-    /// Returns whether the depth is a local minimum within the tolerance. The status stays: why it is not certified.
+    /// Returns whether the depth is a local minimum within the tolerance. The status stays, why it is not certified,
+    /// unless the lower depth closes the gap to the lower bound.
     #[cold]
     #[inline(never)]
     fn improve_locally(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
@@ -272,6 +273,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 status: hit.status,
                 ..found
             };
+            if hit.depth - hit.depth_lower <= limits.gap.allowed(&query.scale, hit.depth) {
+                hit.status = Status::Converged;
+            }
         }
         Ok(is_minimum)
     }
@@ -371,8 +375,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let is_minimum = hit.status != Status::InconsistentSupport
             && self.improve_locally(hit, &request.limits)?;
-        hit.pos = hit.middle();
-        Ok(is_minimum)
+        let is_certified = hit.status == Status::Converged;
+        hit.pos = if is_certified && wants_pos {
+            self.cold_contact_position(hit, request.limits.gap.tolerance)?
+        } else {
+            hit.middle()
+        };
+        Ok(is_minimum && !is_certified)
     }
 
     /// Returns the contact position of a hit. `set`: the known vertices of its search.

@@ -67,8 +67,8 @@ const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
 const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
 /// Fewer than [`max_faces`], because insertions enclose some of the corners and a query is to use at most 44 KB of
 /// stack (test `costs`). Measured on nearly concentric ellipsoids: at most 302 faces up to 140 support points, 352 at the
-/// support limit; with 344 a ball around a small hull ended at 149.
-const LARGE_FACES: usize = 360;
+/// support limit.
+const LARGE_FACES: usize = 352;
 /// The number of vertices of the buffers of an [`Arena`].
 const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
 const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
