@@ -64,11 +64,11 @@ const SMALL_CORNERS: usize = 32;
 const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
 /// The number of vertices of the large buffers, on the stack.
 const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
-const LARGE_CORNERS: usize = max_corners(LARGE_VERTICES);
-/// Fewer than [`max_faces`], because insertions enclose some of the corners and a query is to use at most 44 KB of
-/// stack (test `costs`). Measured on nearly concentric ellipsoids: at most 302 faces up to 140 support points, 352 at the
-/// support limit.
+/// The number of faces of the large buffers: what 44 KB of stack leave (test `costs`).
 const LARGE_FACES: usize = 352;
+/// The number of corners that these faces are enough for: a closed surface of C corners has 2 C − 4 faces, and an insertion
+/// makes a few new faces before it frees the old ones. The corners above the number of vertices are known differences.
+const LARGE_CORNERS: usize = LARGE_FACES / 2 - 2;
 /// The number of vertices of the buffers of an [`Arena`].
 const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
 const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
@@ -78,18 +78,13 @@ const SPARE_VERTICES: usize = 4;
 /// The largest number of entries that a start of the polytope adds to the vertex set.
 const START_VERTICES: usize = 12;
 
-/// Returns the number of corners for this number of vertices. It is an eighth larger, because known differences become
-/// corners without a callback (measured on deep ellipsoids).
-const fn max_corners(vertices: usize) -> usize {
-    vertices + vertices / 8 + 5
-}
-
 /// Returns the number of faces for C corners: a closed surface has 2 C − 4 faces, and an insertion makes the new faces
 /// before it frees the old ones.
 const fn max_faces(corners: usize) -> usize {
     (2 * corners).next_multiple_of(8)
 }
 
+const _: () = assert!(LARGE_CORNERS > LARGE_VERTICES);
 const _: () = assert!(ARENA_CORNERS < 32768 && ARENA_FACES <= crate::epa::polytope::MAX_FACES);
 const _: () = assert!(ARENA_VERTICES <= 1024 && START_VERTICES < SMALL_VERTICES);
 
