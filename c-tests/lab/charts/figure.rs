@@ -81,7 +81,7 @@ impl Panel {
         let builder = builder.x_label_area_size(38).y_label_area_size(60);
         let mut chart = builder.build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale())?;
         let mut mesh = chart.configure_mesh();
-        mesh.light_line_style(TRANSPARENT).x_labels(5).x_desc(self.axes[0].0).y_desc(self.axes[1].0);
+        mesh.light_line_style(TRANSPARENT).x_labels(5).y_labels(5).x_desc(self.axes[0].0).y_desc(self.axes[1].0);
         mesh.x_label_formatter(&|v| label(*v)).y_label_formatter(&|v| label(*v)).draw()?;
         if let Some(limit) = self.limit.filter(|limit| xs.contains(limit)) {
             chart.draw_series(DashedLineSeries::new([(limit, ys.start), (limit, ys.end)], 4, 4, BLACK.into()))?;
