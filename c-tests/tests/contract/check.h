@@ -15,11 +15,14 @@
 
 static unsigned long checks_made, checks_failed;
 
+/* Adds one to a counter, from any thread. Returns what it was. */
+#define COUNT_UP(counter) __atomic_fetch_add(&(counter), 1, __ATOMIC_RELAXED)
+
 /* Counts a check, and prints the first 20 failures: CHECK(condition, format, ...). */
 #define CHECK(condition, ...)                                          \
     do {                                                               \
-        checks_made++;                                                 \
-        if (!(condition) && checks_failed++ < 20) {                    \
+        COUNT_UP(checks_made);                                         \
+        if (!(condition) && COUNT_UP(checks_failed) < 20) {            \
             printf("%s:%d: not %s: ", __FILE__, __LINE__, #condition); \
             printf(__VA_ARGS__);                                       \
             printf("\n");                                              \
