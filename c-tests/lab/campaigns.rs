@@ -10,6 +10,7 @@
 //! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
+//! | `positions` | how far `pos` is from the objects (`tests/extension/position.c`) | the share of two million hits: 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
 //! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
@@ -52,6 +53,7 @@ fn main() {
         "wide" => show(&programs::alone("wide"), &given, &["1000", "-1", "0", "1"]),
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
+        "positions" => show(&elsewhere("extension/position"), &given, &["1"]),
         "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]
         "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
@@ -59,7 +61,7 @@ fn main() {
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
-            eprintln!("usage: campaigns rates|wide|worst|states|touches|truth|ledger|determinism [ARGUMENT...]");
+            eprintln!("usage: campaigns rates|wide|worst|states|touches|positions|truth|ledger|determinism [ARGUMENT...]");
             std::process::exit(2);
         }
     }

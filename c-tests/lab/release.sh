@@ -54,6 +54,8 @@ step single cargo test --no-fail-fast --features single
 step rates campaign rates
 step wide campaign wide
 step states campaign states
+step touches campaign touches
+step positions campaign positions
 step worst campaign worst
 step truth campaign truth
 step bookworm packages tests bookworm
