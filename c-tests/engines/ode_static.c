@@ -21,7 +21,8 @@ typedef struct {
 
 static placed_t a, b;
 
-static int corrected, invalid_support;
+static int corrected;
+static double support_off; /* the largest error of a support value of this query, metres */
 
 /* The first query of a dCollide. */
 static struct {
@@ -51,12 +52,11 @@ void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir,
     /* a's centre is where a is; that of a triangle is where ODE puts it */
     at = a.body.shape.pos;
     p = hypot(hypot(at[0] - centre.v[0], at[1] - centre.v[1]), at[2] - centre.v[2]) < 1e-12 ? &a : &b;
-    if (support_error(&p->body.shape, dir, v, point) < 1e-10 * pair_size(&a.body.shape, &b.body.shape))
-        return;
-    if (corrected)
+    const double off = support_error(&p->body.shape, dir, v, point);
+    if (corrected && off > 1e-10 * pair_size(&a.body.shape, &b.body.shape))
         ccdVec3Set(v, point[0], point[1], point[2]);
     else
-        invalid_support = 1;
+        support_off = fmax(support_off, off);
 }
 
 static void geom_make(placed_t *p)
@@ -98,7 +98,7 @@ static void query(const pose_truth_t *pose)
     dContactGeom contact;
     geom_place(&a);
     geom_place(&b);
-    invalid_support = 0;
+    support_off = 0;
     first.queries = 0;
     int hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
     if (!first.queries)
@@ -106,9 +106,9 @@ static void query(const pose_truth_t *pose)
     /* ODE turns a triangle that touches a little and queries it again, four times: the
      * first result is that of this pose. */
     if (b.body.kind == KIND_TRIANGLE)
-        pose_judge(&a.body, &b.body, pose, invalid_support, first.hit, first.depth, first.length);
+        pose_judge(&a.body, &b.body, pose, support_off, first.hit, first.depth, first.length);
     else
-        pose_judge(&a.body, &b.body, pose, invalid_support, hit, hit ? contact.depth : 0,
+        pose_judge(&a.body, &b.body, pose, support_off, hit, hit ? contact.depth : 0,
                    hit ? dCalcVectorLength3(contact.normal) : 0);
 }
 

@@ -145,8 +145,9 @@ static inline void tally_print(const char *line, const tally_t *t)
 }
 
 /* ODE's cylinder callback is wrong for directions within about 1e-15 of the axis: it normalises
- * what rounding leaves across the axis, and returns a point up to a radius off. Queries with such a
- * point are about no convex shape, and counted apart: by the second tally. */
+ * what rounding leaves across the axis, and returns a point up to a radius off. Queries with a point that is off by more
+ * than a tenth of the tolerance are about no convex shape, and counted apart: by the second tally. Points that are less off
+ * make a depth uncertain by as much. */
 static tally_t tally[2];
 
 /* Computes the support point along dir; returns by how much the support value of v is off it. */
@@ -171,12 +172,13 @@ static const double POSE_TOLERANCE = 1e-6;
 
 static long threw; /* queries in which FCL threw */
 
-/* Counts a result. Where a callback was wrong, none is right, and what is within two tolerances of the
- * true depth will do. */
-static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, int invalid_support, int hit,
+/* Counts a result. support_off: the largest error of a support value, metres. Where a callback was wrong, none is right, and
+ * what is within two tolerances of the true depth will do. */
+static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, double support_off, int hit,
                               double depth, double length)
 {
-    const double contact_eps = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size;
+    const int invalid_support = support_off > 0.1 * POSE_TOLERANCE;
+    const double contact_eps = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size + 2 * support_off;
     const verdict_truth_t truth = { pose->lower, pose->upper, POSE_TOLERANCE, contact_eps };
     const verdict_t v = tally_add(&tally[invalid_support], &truth, hit, depth, length);
     if (v != VERDICT_RIGHT && !invalid_support)
