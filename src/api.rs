@@ -153,8 +153,8 @@ pub struct Settings {
     /// of the Minkowski difference.
     pub tolerance: Real,
     /// Limit on the support points after the first tetrahedron, in `penetration_along` and
-    /// `penetration_planar` on the portal steps. The library's own limits are 160, 320 for proofs and
-    /// along a direction, 380 for distances and planar queries. No query was seen to take more than 400
+    /// `penetration_planar` on the portal steps. The library's own limits are 160, 320 for proofs,
+    /// along a direction and planar, 380 for distances. No query was seen to take more than 400
     /// support points.
     pub max_iterations: u64,
     /// The requested results.

@@ -12,6 +12,7 @@
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
 //! | `positions` | how far `pos` is from the objects (`tests/extension/position.c`) | the share of two million hits: 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
+//! | `planar` | flat objects in a plane (`tests/extension/planar.c`) | pairs: 20000 |
 //! | `truth` | the truth against itself and all of the certified pairs | |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | digests that `cmake/packages/cross.sh` compares between processors | |
@@ -54,6 +55,7 @@ fn main() {
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
         "positions" => show(&elsewhere("extension/position"), &given, &["1"]),
+        "planar" => show(&elsewhere("extension/planar"), &given, &["20000"]),
         "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]
         "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
@@ -61,7 +63,9 @@ fn main() {
         "ledger" => show(&program("configurations"), &[], &["--ledger"]),
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
-            eprintln!("usage: campaigns rates|wide|worst|states|touches|positions|truth|ledger|determinism [ARGUMENT...]");
+            eprintln!(
+                "usage: campaigns rates|wide|worst|states|planar|touches|positions|truth|ledger|determinism [ARGUMENT...]"
+            );
             std::process::exit(2);
         }
     }

@@ -48,7 +48,8 @@ use crate::types::{Penetration, Status};
 
 /// The limit of support points of a default query, up to the end of its polytope.
 pub const MAX_DEFAULT_POINTS: u64 = 160;
-/// The limit of support points of a query that proves the tolerance, up to the end of its polytope, and of `along`.
+/// The limit of support points of a query that proves the tolerance, up to the end of its polytope, and of the published
+/// method (along, incremental, planar).
 ///
 /// No query is to take more than 400 support points in all. Derived: 400 − 80. Measured (`cargo run --release --example
 /// campaigns -- wide`): up to 80 more, on nearly coincident bodies, are evaluated beyond this limit, for starts of the

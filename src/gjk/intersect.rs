@@ -295,7 +295,8 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
             }
             return resolve_by_portal(query, set, corners, interior, &dir);
         };
-        if is_planar && distance2 <= eps2 {
+        // In a plane, a triangle that has the origin inside is a proof. Its normal is that of the plane: no direction.
+        if is_planar && (simplex.len() == 3 || distance2 <= eps2) {
             let [a, b, c] = simplex.corners();
             return Ok(Enclosing::new(set, &[a, b, c, c], interior));
         }
@@ -311,6 +312,9 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         dir = n;
     }
     let [a, b, c] = simplex.corners();
+    if is_planar {
+        return Ok(Enclosing::new(set, &[a, b, c, c], interior));
+    }
     resolve_by_portal(query, set, [a, b, c, c], interior, &dir)
 }
 

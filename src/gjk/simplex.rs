@@ -104,14 +104,15 @@ impl Simplex {
 
     /// Returns whether the origin is on the inner side of the old face by more than rounding, after
     /// [`Simplex::add`] has returned `None`. (The normal of a sliver may point to either side.) If the interior
-    /// point is a corner, the old face need not be tested: it contains that point and lies inside D.
+    /// point is a corner, the old face contains that point and lies inside D, unless D is flat.
     pub fn is_certain(&self) -> bool {
-        if self.has_interior() {
-            return true;
-        }
         let [a, b, c, w] = self.tetrahedron().map(|corner| corner.w);
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * a.norm() * b.norm() * c.norm();
         let volume = (a - w).cross(&(b - w)).dot(&(c - w));
+        if self.has_interior() {
+            let edges = (a - w).norm() * (b - w).norm() * (c - w).norm();
+            return volume.abs() > TRIPLE_PRODUCT_ULPS * EPSILON * edges;
+        }
         let height = a.cross(&b).dot(&c);
         if volume < 0.0 {
             height < -error

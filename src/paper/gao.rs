@@ -29,7 +29,8 @@
 //! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
 //! method on support calls only; the local search of this library, on known vertices, is [`crate::local`].
 
-use crate::math::{self, EPSILON, ITERATION_CAP, Vec3, larger, max_abs, perpendicular, unit};
+use crate::epa::penetration::MAX_PROVEN_POINTS;
+use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::Stop;
 use crate::types::{Penetration, Settings, Status};
@@ -70,7 +71,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let ended = run_algorithm_3(&mut search, ray, on_new_ray)?;
     Ok(Penetration {
         iterations: settings.max_iterations - search.budget,
-        status: Status::of_early_end(search.budget, settings.max_iterations, ITERATION_CAP)
+        status: Status::of_early_end(search.budget, settings.max_iterations, MAX_PROVEN_POINTS)
             .unless(ended.is_some()),
         ..ended.unwrap_or_else(|| make_result(&search.best, None))
     })

@@ -50,6 +50,11 @@ fn results_from_every_kind_of_state() {
 }
 
 #[test]
+fn flat_objects_in_a_plane() {
+    strict(program("tests/extension/planar.c")).build().run([harness::rounds(300)]);
+}
+
+#[test]
 fn pos_is_the_center_of_pressure() {
     strict(program("tests/extension/pressure.c")).build().run([one_in(8)]);
 }
