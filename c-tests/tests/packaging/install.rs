@@ -110,12 +110,14 @@ pub fn page(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a page")
 }
 
+#[cfg(not(feature = "single"))]
 /// Checks a size in bytes.
 pub fn assert_small(name: &str, size: u64, most: u64) {
     println!("{name}: {size} bytes, at most {most}");
     assert!(size <= most, "{name}: {size} bytes");
 }
 
+#[cfg(not(feature = "single"))]
 pub fn size(path: &Path) -> u64 {
     fs::metadata(path).expect("a file").len()
 }

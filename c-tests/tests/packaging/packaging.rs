@@ -8,11 +8,15 @@ mod install;
 
 use crate::harness::{self, Executable, Precision, Program, must_succeed, output_dir, root};
 use install::{
-    assert_all_run_on_ours, assert_runs_on_ours, assert_small, c_compiler, consumer, define, empty_dir, find,
-    installed_and_moved, page, run, size,
+    assert_all_run_on_ours, assert_runs_on_ours, c_compiler, consumer, define, empty_dir, find, installed_and_moved,
+    page, run,
 };
+#[cfg(not(feature = "single"))]
+use install::{assert_small, size};
 use std::fs;
-use std::path::{Path, PathBuf};
+#[cfg(not(feature = "single"))]
+use std::path::Path;
+use std::path::PathBuf;
 use std::process::Command;
 
 #[test]
