@@ -236,13 +236,13 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         }
     }
 
-    /// Returns what has been seen of an object: its known vertices.
+    /// Returns the known vertices of an object.
     #[inline(always)]
-    fn seen(&self, object: usize) -> Seen<'q> {
-        Seen {
+    fn known_of(&self, object: usize) -> ObjectVertices<'q> {
+        ObjectVertices {
             known: self.known,
             object,
-            queried: [ZERO; Seen::MAX_QUERIED],
+            queried: [ZERO; ObjectVertices::MAX_QUERIED],
             len: 0,
         }
     }
@@ -250,7 +250,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     /// Returns the known vertices of an object with the greatest height along ±e1 and ±e2.
     #[inline(always)]
     pub fn known_extremes(&self, object: usize) -> [Vec3; 4] {
-        self.seen(object).extremes(self.depth_over_tilt)
+        self.known_of(object).extremes(self.depth_over_tilt)
     }
 
     /// Evaluates an object along n + T `out`.
@@ -258,18 +258,18 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
-    fn query(&self, seen: &mut Seen, out: Vec2) -> Result<Vec3, Fault> {
+    fn query(&self, evaluated: &mut ObjectVertices, out: Vec2) -> Result<Vec3, Fault> {
         let [e1, e2] = &self.frame.axes;
         let aside = (e1 * out.x + e2 * out.y) * (self.tilt * self.cosine);
         let dir = self.frame.normal * self.cosine + aside;
-        let p = self.md.support_of_object(seen.object, &dir);
-        let p = self.frame.project(&p)? * if seen.object == 0 { 1.0 } else { -1.0 };
+        let p = self.md.support_of_object(evaluated.object, &dir);
+        let p = self.frame.project(&p)? * if evaluated.object == 0 { 1.0 } else { -1.0 };
         let v = Vec3::new(
             p.x,
             p.y,
             larger((self.half_gap - p.z) * self.per_depth, 0.0),
         );
-        seen.push(v);
+        evaluated.push(v);
         Ok(v)
     }
 
@@ -292,12 +292,12 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     /// [`Fault::NonFinite`].
     #[inline(never)]
     pub fn build_fan(&self, object: usize, fan: &mut Fan) -> Result<bool, Fault> {
-        let mut seen = self.seen(object);
+        let mut evaluated = self.known_of(object);
         let is_polytope = self.is_polytope[object % 2];
-        if !(is_polytope && self.find_polygon(&mut seen, true, fan)?
-            || self.find_curved(&mut seen, fan)?)
+        if !(is_polytope && self.find_polygon(&mut evaluated, true, fan)?
+            || self.find_curved(&mut evaluated, fan)?)
         {
-            self.find_polygon(&mut seen, false, fan)?;
+            self.find_polygon(&mut evaluated, false, fan)?;
         }
         let (mut least, mut is_point) = (1.0, true);
         let size2 = POINT_REL * POINT_REL * self.extent * self.extent;
@@ -323,10 +323,15 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    fn find_polygon(&self, seen: &mut Seen, may_fail: bool, fan: &mut Fan) -> Result<bool, Fault> {
+    fn find_polygon(
+        &self,
+        evaluated: &mut ObjectVertices,
+        may_fail: bool,
+        fan: &mut Fan,
+    ) -> Result<bool, Fault> {
         let same = self.same_distance();
         let mut polygon = Polygon::default();
-        for v in &seen.extremes(self.depth_over_tilt) {
+        for v in &evaluated.extremes(self.depth_over_tilt) {
             polygon.push_distinct(v, same);
         }
         let least_side = POINT_REL * self.extent;
@@ -341,12 +346,12 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             let ends = polygon.side(side);
             let [p, q] = ends.map(|end| self.height(end, &out));
             let least = larger(p, q) + 2.0 * self.vertex_offset;
-            let mut found = seen.highest(out, self.depth_over_tilt, least);
+            let mut found = evaluated.highest(out, self.depth_over_tilt, least);
             let is_side = n > 2 || n == 2 && step < 2;
             let is_covered =
-                n < 3 && found.is_none() && self.is_covered(seen.object, out, ends, is_side);
+                n < 3 && found.is_none() && self.is_covered(evaluated.object, out, ends, is_side);
             if found.is_none() && !is_covered {
-                let v = self.query(seen, out)?;
+                let v = self.query(evaluated, out)?;
                 if self.height(&v, &out) > least {
                     (found, misses) = (Some(v), misses + 1);
                 } else {
@@ -442,13 +447,13 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     }
 
     /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: a
-    /// query returns a vertex seen before, or four points are in a plane with the deepest one and not of a disc.
+    /// query returns a known vertex, or four points are in a plane with the deepest one and not of a disc.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(never)]
-    fn find_curved(&self, seen: &mut Seen, fan: &mut Fan) -> Result<bool, Fault> {
-        let center = self.centers[seen.object % 2];
+    fn find_curved(&self, evaluated: &mut ObjectVertices, fan: &mut Fan) -> Result<bool, Fault> {
+        let center = self.centers[evaluated.object % 2];
         let distance = center.norm();
         let has_axis = distance > self.same_distance();
         let axis = if has_axis {
@@ -457,9 +462,9 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             Vec2::x()
         };
         let out = four_directions(Vec2::new(axis.x - axis.y, axis.x + axis.y) * H);
-        let a = self.query(seen, out[0])?;
-        let c = self.query(seen, out[2])?;
-        if seen.has_repeated(2, self.same_distance()) {
+        let a = self.query(evaluated, out[0])?;
+        let c = self.query(evaluated, out[2])?;
+        if evaluated.has_repeated(2, self.same_distance()) {
             return Ok(false);
         }
         let tolerance = SYMMETRY_REL_TOL * self.extent;
@@ -485,16 +490,16 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             && is_round(&a, aside_a)
             && is_round(&c, aside_c)
             && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c
-            && self.is_below_known_planes(seen.object, [&b, &d], tolerance);
+            && self.is_below_known_planes(evaluated.object, [&b, &d], tolerance);
         let mut between = None;
         if !is_mirrored {
-            b = self.query(seen, out[1])?;
-            d = self.query(seen, out[3])?;
+            b = self.query(evaluated, out[1])?;
+            d = self.query(evaluated, out[3])?;
             between = self.fit_disc_rim([&a, &b, &c, &d], &out);
             let normal = (b - a).cross(&(c - a));
             let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
             let is_face = between.is_none() && drop_at_deepest < IN_PLANE_DROP_TOL;
-            if is_face || seen.has_repeated(2, self.same_distance()) {
+            if is_face || evaluated.has_repeated(2, self.same_distance()) {
                 return Ok(false);
             }
         }
@@ -591,15 +596,15 @@ fn moved(v: &Vec3, out: Vec2, distance: f64) -> Vec3 {
     Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z)
 }
 
-/// The vertices seen of one object: known ones and those queried for its feature.
-struct Seen<'q> {
+/// The evaluated vertices of one object: known ones and those queried for its feature.
+struct ObjectVertices<'q> {
     known: &'q [KnownPair],
     object: usize,
-    queried: [Vec3; Seen::MAX_QUERIED],
+    queried: [Vec3; ObjectVertices::MAX_QUERIED],
     len: usize,
 }
 
-impl Seen<'_> {
+impl ObjectVertices<'_> {
     /// Number of queried vertices that are kept; later ones are queried again if needed.
     const MAX_QUERIED: usize = 8;
 
@@ -622,7 +627,7 @@ impl Seen<'_> {
     #[inline(always)]
     fn extremes(&self, depth_over_tilt: f64) -> [Vec3; 4] {
         // The index of a vertex is in the low bits of its height, so that the maximum carries it.
-        const MASK: u64 = (MAX_KNOWN + Seen::MAX_QUERIED).next_power_of_two() as u64 - 1;
+        const MASK: u64 = (MAX_KNOWN + ObjectVertices::MAX_QUERIED).next_power_of_two() as u64 - 1;
         let mut best = [f64::NEG_INFINITY; 4];
         let mut compare = |i: usize, v: &Vec3| {
             let fall = v.z * depth_over_tilt;
@@ -664,7 +669,7 @@ impl Seen<'_> {
         found
     }
 
-    /// Returns whether one of the newest `count` vertices was seen before.
+    /// Returns whether one of the newest `count` vertices was known before.
     #[inline(always)]
     fn has_repeated(&self, count: usize, same: f64) -> bool {
         let end = self.len.saturating_sub(count);
