@@ -188,8 +188,8 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Evaluates the first direction, before there is a vertex set. Most queries of separated objects end here.
-    /// `is_remembered`: true if an earlier query has evaluated it. The caller adds the point to the set as entry 0, with the direction of the upper
-    /// bound.
+    /// `is_remembered`: true if an earlier query has evaluated it. The caller adds the point to the set as entry 0, with
+    /// the direction of the upper bound.
     ///
     /// # Errors
     /// [`Stop::Separated`], [`Fault::NonFinite`].

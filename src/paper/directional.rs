@@ -19,8 +19,8 @@ use crate::minkowski::support_query::Stop;
 use crate::paper::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, make_result, rounding};
 use crate::types::{Penetration, Settings, Status};
 
-/// Follows the ray along unit `dir` to the boundary of D, in at most [`MAX_PROVEN_POINTS`] iterations. Requires the origin in D, which is not tested. Returns the
-/// result with its lower bound, and the last portal if there was one.
+/// Follows the ray along unit `dir` to the boundary of D, in at most [`MAX_PROVEN_POINTS`] iterations. Requires the
+/// origin in D, which is not tested. Returns the result with its lower bound, and the last portal if there was one.
 ///
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
