@@ -16,12 +16,13 @@ use crate::ffi::warm::NAME;
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, if_overlapping};
+use crate::minkowski::support_query::Stop;
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
-use crate::query::signed_distance::Wanted;
+use crate::query::signed_distance::Margins;
+use crate::query::{Pair, Wanted};
+use crate::solver::Solver;
 use crate::types;
 pub use crate::types::Status;
 
@@ -90,8 +91,8 @@ impl std::error::Error for Error {}
 impl From<Fault> for Error {
     fn from(fault: Fault) -> Self {
         match fault {
-            Fault::NonFinite => Error::BadInput("a shape's point is not finite, or too large"),
             Fault::NoMemory => Error::NoMemory,
+            _ => Error::BadInput("a shape's point is not finite, or too large"),
         }
     }
 }
@@ -168,17 +169,6 @@ impl Settings {
             tolerance,
             ..Settings::default()
         }
-    }
-
-    /// Converts the settings to those of the solvers.
-    ///
-    /// # Errors
-    /// A tolerance that is negative or NaN.
-    fn solver_settings(&self) -> Result<types::Settings, Error> {
-        Ok(types::Settings {
-            tolerance: validate_length(self.tolerance, "the tolerance is negative or NaN")?,
-            max_iterations: ITERATION_CAP.min(self.max_iterations),
-        })
     }
 }
 
@@ -328,78 +318,94 @@ impl<S: Shape + ?Sized> SupportMap for SupportOf<'_, S> {
 
 type ShapePair<'a, A, B> = Pair<SupportOf<'a, A>, SupportOf<'a, B>>;
 
-/// Makes the pair of two shapes. `has_state`: true if the caller keeps a state.
+/// Makes the pair of two shapes with these settings. `has_state`: true if the caller keeps a state.
 ///
 /// # Errors
-/// A center that is not finite.
-fn make_pair<'a, A, B>(a: &'a A, b: &'a B, has_state: bool) -> Result<ShapePair<'a, A, B>, Error>
+/// A center that is not finite; a tolerance that is negative or NaN.
+fn make_pair<'a, A, B>(
+    a: &'a A,
+    b: &'a B,
+    settings: &Settings,
+    has_state: bool,
+) -> Result<ShapePair<'a, A, B>, Error>
 where
     A: Shape + ?Sized,
     B: Shape + ?Sized,
 {
-    let center = match (a.center(), b.center()) {
+    let settings = types::Settings {
+        tolerance: validate_length(settings.tolerance, "the tolerance is negative or NaN")?,
+        max_iterations: ITERATION_CAP.min(settings.max_iterations),
+    };
+    let centers = match (a.center(), b.center()) {
         (Some(v1), Some(v2)) => {
             let [v1, v2] = [from_real(v1), from_real(v2)];
             Some(SupportPoint { v: v1 - v2, v1, v2 })
         }
         _ => None,
     };
-    if center.is_some_and(|c| !c.v.sum().is_finite()) {
+    if centers.is_some_and(|c| !c.v.sum().is_finite()) {
         return Err(Error::BadInput("a shape's center is not finite"));
     }
     Ok(Pair {
         difference: MinkowskiDifference::new(SupportOf(a), SupportOf(b)),
-        centers: center,
+        centers,
         first_dir: None,
-        keeps_state: has_state,
-        wants_points: true,
+        settings,
+        wanted: Wanted {
+            state: has_state,
+            points: true,
+            pos: false,
+        },
     })
 }
 
 /// Runs `solve` with the state of `warm`, or a cold one without it, and stores the new state. A fault
-/// leaves the state unchanged.
+/// leaves the state unchanged. Returns `None` if the shapes are apart.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    solve: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
-) -> Result<R, Error> {
+    solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
+) -> Result<Option<R>, Error> {
     let mut state = warm.as_ref().map_or(WarmStart::COLD, |warm| warm.0);
-    let result = solve(&mut state)?;
+    let found = match solve(&mut state) {
+        Ok(found) => Some(found),
+        Err(Stop::Separated(_)) => None,
+        Err(Stop::Fault(fault)) => return Err(fault.into()),
+    };
     if let Some(warm) = warm {
         warm.0 = state;
     }
-    Ok(result)
+    Ok(found)
 }
 
-/// Runs a penetration query. The flag passed to `solve` requests the contact position.
+/// Returns a point that is wanted, else zero.
+fn point_if(is_wanted: bool, point: &Vec3) -> [Real; 3] {
+    if is_wanted { to_real(point) } else { [0.0; 3] }
+}
+
+/// Runs a penetration query.
 fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
     settings: &Settings,
     warm: Option<&mut Warm>,
-    solve: impl FnOnce(
-        &ShapePair<'_, A, B>,
-        &mut WarmStart,
-        &types::Settings,
-        bool,
-        &mut types::Penetration,
-    ) -> Result<(), Stop>,
+    solver: Solver,
 ) -> Result<Option<Penetration>, Error> {
-    let solver = settings.solver_settings()?;
     let want = settings.want;
-    let pair = make_pair(a, b, warm.is_some())?;
-    let mut hit = types::Penetration::default();
+    let mut pair = make_pair(a, b, settings, warm.is_some())?;
+    pair.wanted.pos = want.pos;
     let found = with_state(warm, |state| {
-        if_overlapping(solve(&pair, state, &solver, want.pos, &mut hit))
+        let found = solver.run(&pair, state, &mut OwnedBuffers::default());
+        pair.complete(state, &found);
+        found
     })?;
-    let point_if = |wanted: bool, point: Vec3| if wanted { to_real(&point) } else { [0.0; 3] };
-    Ok(found.map(|()| Penetration {
+    Ok(found.map(|hit| Penetration {
         depth: hit.depth as Real,
         depth_lower: lower_to_real(hit.depth_lower),
         dir: to_real(&hit.dir),
         normal: to_real(&hit.normal),
-        pos: point_if(want.pos, hit.pos),
-        point1: point_if(want.points, hit.point1),
-        point2: point_if(want.points, hit.point2),
+        pos: point_if(want.pos, &hit.pos),
+        point1: point_if(want.points, &hit.point1),
+        point2: point_if(want.points, &hit.point2),
         support_points: pair.difference.supports(),
         iterations: hit.iterations,
         status: hit.status,
@@ -408,7 +414,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
 
 /// Defines a penetration query by its name, its direction argument, if any, and its solver.
 macro_rules! query {
-    ($(#[$docs:meta])* $name:ident $(($dir:ident))?, $solve:expr) => {
+    ($(#[$docs:meta])* $name:ident $(($dir:ident))?, $solver:expr) => {
         $(#[$docs])*
         pub fn $name<A: Shape + ?Sized, B: Shape + ?Sized>(
             a: &A,
@@ -418,7 +424,7 @@ macro_rules! query {
             warm: Option<&mut Warm>,
         ) -> Result<Option<Penetration>, Error> {
             $(let $dir = validate_direction($dir)?;)?
-            penetration_query(a, b, settings, warm, $solve)
+            penetration_query(a, b, settings, warm, $solver)
         }
     };
 }
@@ -457,7 +463,7 @@ query!(
     /// # Errors
     /// A tolerance that is negative or NaN; a point of a shape that is not finite.
     penetration,
-    |pair, state, settings, wants, hit| pair.penetration(state, settings, wants, hit)
+    Solver::Global
 );
 
 /// Reports whether the shapes overlap; shapes that touch within rounding do not.
@@ -481,11 +487,12 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
-    let pair = make_pair(a, b, warm.is_some())?;
-    let overlap = match warm {
-        None => if_overlapping(pair.intersect(None))?,
-        warm => with_state(warm, |state| if_overlapping(pair.intersect(Some(state))))?,
-    };
+    let pair = make_pair(a, b, &Settings::default(), warm.is_some())?;
+    let overlap = with_state(warm, |state| {
+        let found = pair.intersect(state);
+        pair.complete(state, &found);
+        found
+    })?;
     Ok(overlap.is_some())
 }
 
@@ -517,29 +524,27 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     options: &DistanceOptions,
     warm: Option<&mut Warm>,
 ) -> Result<Distance, Error> {
-    let margins = "a margin is negative, NaN or not finite";
-    let wanted = Wanted {
-        margin1: validate_length(options.margin1, margins)?,
-        margin2: validate_length(options.margin2, margins)?,
+    let cause = "a margin is negative, NaN or not finite";
+    let margins = Margins {
+        margin1: validate_length(options.margin1, cause)?,
+        margin2: validate_length(options.margin2, cause)?,
         max_distance: validate_length(options.max_distance, "max_distance is negative or NaN")?,
-        settings: settings.solver_settings()?,
     };
-    if !(wanted.margin1 + wanted.margin2 < f64::from(Real::MAX)) {
-        return Err(Error::BadInput(margins));
+    if !(margins.margin1 + margins.margin2 < f64::from(Real::MAX)) {
+        return Err(Error::BadInput(cause));
     }
+    let pair = make_pair(a, b, settings, warm.is_some())?;
+    let distance = with_state(warm, |state| {
+        Ok(pair.signed_distance(&margins, state, &mut OwnedBuffers::default())?)
+    })?;
+    let d = distance.unwrap_or_default();
     let points = settings.want.points;
-    let pair = make_pair(a, b, warm.is_some())?;
-    let minimum = |pair: &ShapePair<'_, A, B>, state: &mut WarmStart, settings: &_, hit: &mut _| {
-        pair.proven(state, settings, &mut OwnedBuffers::default(), false, hit)
-    };
-    let d = with_state(warm, |state| pair.signed_distance(state, &wanted, minimum))?;
-    let point_if_wanted = |point: Vec3| if points { to_real(&point) } else { [0.0; 3] };
     Ok(Distance {
         distance: lower_to_real(d.lower),
         distance_upper: -lower_to_real(-d.upper),
         normal: to_real(&d.normal),
-        point1: point_if_wanted(d.point1),
-        point2: point_if_wanted(d.point2),
+        point1: point_if(points, &d.point1),
+        point2: point_if(points, &d.point2),
         support_points: pair.difference.supports(),
         iterations: d.iterations,
         status: d.status,
@@ -615,7 +620,7 @@ query!(
     /// # Errors
     /// As [`penetration`].
     penetration_local,
-    |pair, state, settings, wants, hit| pair.local(state, settings, wants, hit)
+    Solver::Local
 );
 
 query!(
@@ -638,7 +643,7 @@ query!(
     /// # Errors
     /// As [`penetration`]; a failed allocation.
     penetration_proven,
-    |pair, state, settings, wants, hit| pair.proven(state, settings, &mut OwnedBuffers::default(), wants, hit)
+    Solver::Proven
 );
 
 query!(
@@ -649,7 +654,7 @@ query!(
     /// # Errors
     /// A `dir` that is zero or not finite, and as [`penetration`].
     penetration_along(dir),
-    |pair, state, settings, _, hit| pair.along(dir, state, settings, hit)
+    Solver::Along(dir)
 );
 
 query!(
@@ -659,7 +664,7 @@ query!(
     /// # Errors
     /// A `plane_normal` that is zero or not finite, and as [`penetration`].
     penetration_planar(plane_normal),
-    |pair, state, settings, _, hit| pair.incremental(Some(plane_normal), state, settings, false, hit)
+    Solver::Planar(plane_normal)
 );
 
 query!(
@@ -670,7 +675,7 @@ query!(
     /// # Errors
     /// As [`penetration`].
     penetration_incremental,
-    |pair, state, settings, wants, hit| pair.incremental(None, state, settings, wants, hit)
+    Solver::Incremental
 );
 
 /// Tests a shape's support function and center along 192 directions, each evaluated twice; for

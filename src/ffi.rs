@@ -39,6 +39,7 @@ pub mod callbacks;
 pub mod collide;
 pub mod paper;
 pub mod polytope;
+pub mod run;
 pub mod support;
 pub mod types;
 pub mod vec3;

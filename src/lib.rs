@@ -73,6 +73,7 @@ mod query;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
+mod solver;
 mod trace;
 mod types;
 

@@ -30,52 +30,39 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         plane: Option<Vec3>,
         state: &mut WarmStart,
-        settings: &Settings,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.with_separating_axis(state, |state| {
-            let start = state.direction().unwrap_or_else(|| self.cold_start());
-            let until = Until::Shortcut;
-            // Each iteration takes one support point; the start, the overlap and the contact position take the rest of 400
-            // (measured on a thousand pairs of each category of c-tests/tests/stability/categories.h: at most 56).
-            let max_iterations = settings.max_iterations.min(MAX_PROVEN_POINTS);
-            let capped = Settings {
-                max_iterations,
-                ..*settings
-            };
-            *hit = gao::penetration(&self.difference, start, plane, until, &capped, |_| ())?;
-            let mut set = VertexSet::EMPTY;
-            self.prove_overlap(hit, &mut set, settings, plane.is_some())?;
-            *state = self.with_centers(WarmStart::towards(hit.normal));
-            hit.pos = if wants_pos && hit.status == Status::Converged && plane.is_none() {
-                self.contact_position(&set, hit, settings.tolerance)?
-            } else {
-                hit.middle()
-            };
-            Ok(())
-        })
+    ) -> Result<Penetration, Stop> {
+        let start = state.direction().unwrap_or_else(|| self.cold_start());
+        // Each iteration takes one support point; the start, the overlap and the contact position take the rest of 400
+        // (measured on a thousand pairs of each category of c-tests/tests/stability/categories.h: at most 56).
+        let max_iterations = self.settings.max_iterations.min(MAX_PROVEN_POINTS);
+        let settings = Settings {
+            max_iterations,
+            ..self.settings
+        };
+        let until = Until::Shortcut;
+        let mut hit = gao::penetration(&self.difference, start, plane, until, &settings, |_| ())?;
+        let mut set = VertexSet::EMPTY;
+        self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
+        *state = WarmStart::towards(hit.normal);
+        hit.pos = if self.wanted.pos && hit.status == Status::Converged && plane.is_none() {
+            self.contact_position(&set, &hit)?
+        } else {
+            hit.middle()
+        };
+        Ok(hit)
     }
 
     /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
-    pub fn along(
-        &self,
-        dir: Vec3,
-        state: &mut WarmStart,
-        settings: &Settings,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.with_separating_axis(state, |state| {
-            let (found, portal) = directional::along(&self.difference, &dir, settings)?;
-            *hit = found;
-            let mut set = VertexSet::EMPTY;
-            for plane in portal.iter().flat_map(|p| &p.planes) {
-                set.push(&plane.normal, &plane.point);
-            }
-            self.prove_overlap(hit, &mut set, settings, false)?;
-            *state = self.with_centers(WarmStart::towards(hit.normal));
-            hit.pos = hit.middle();
-            Ok(())
-        })
+    #[inline(never)]
+    pub fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
+        let (mut hit, portal) = directional::along(&self.difference, dir, &self.settings)?;
+        let mut set = VertexSet::EMPTY;
+        for plane in portal.iter().flat_map(|p| &p.planes) {
+            set.push(&plane.normal, &plane.point);
+        }
+        self.prove_overlap(&mut hit, &mut set, false)?;
+        *state = WarmStart::towards(hit.normal);
+        hit.pos = hit.middle();
+        Ok(hit)
     }
 }

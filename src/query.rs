@@ -25,14 +25,13 @@ use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
+use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::minkowski::warm_start::{WarmKind, WarmStart};
-use crate::query::signed_distance::{Distance, Wanted, signed_distance};
 use crate::types::{Penetration, Settings, Status};
 
-/// The input of a query: two objects, their centers, and the first direction.
+/// A pair of objects, and what its caller wants to know of it: the input of a query.
 pub struct Pair<A, B> {
     /// The Minkowski difference of the objects.
     pub difference: MinkowskiDifference<A, B>,
@@ -40,35 +39,59 @@ pub struct Pair<A, B> {
     pub centers: Option<SupportPoint>,
     /// The caller's first direction, if given.
     pub first_dir: Option<Vec3>,
-    /// True if the caller keeps the state.
-    pub keeps_state: bool,
-    /// True if the caller reads the witness points or the contact position.
-    pub wants_points: bool,
+    /// The tolerance and the limits.
+    pub settings: Settings,
+    /// What the caller reads.
+    pub wanted: Wanted,
+}
+
+/// The results of a query that its caller reads, besides depth, bounds and directions.
+#[derive(Clone, Copy, Debug)]
+pub struct Wanted {
+    /// The state for the next query.
+    pub state: bool,
+    /// The witness points. If they are not wanted, they may be zero.
+    pub points: bool,
+    /// The contact position. If it is not wanted, it may be zero.
+    pub pos: bool,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
-    /// Evaluates the separating axis of the last query and, if it does not separate, runs `solve`. Stores the
-    /// separating axis found by either.
+    /// Evaluates the separating axis of the last query, if there is one, and stores the next target separation.
+    ///
+    /// # Errors
+    /// [`Stop::Separated`] with the axis for the next query: the axis separates. [`Fault::NonFinite`].
     #[inline(always)]
-    pub fn with_separating_axis<R>(
-        &self,
-        state: &mut WarmStart,
-        solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
-    ) -> Result<R, Stop> {
-        let mut target_separation = 0.0;
-        if let Some(mut axis) = state.separating_axis() {
-            let found = axis.test(&mut SupportQuery::new(&self.difference, None, 0.0))?;
-            target_separation = axis.target_separation;
-            if let Some(n) = found {
-                *state = WarmStart::separated(axis.dir, target_separation, state.radius);
-                return Err(Stop::Separated(n));
+    pub fn separate(&self, state: &mut WarmStart) -> Result<(), Stop> {
+        let Some(mut axis) = state.separating_axis() else {
+            return Ok(());
+        };
+        let mut query = SupportQuery::new(&self.difference, None, 0.0);
+        let is_separated = axis.test(&mut query)?.is_some();
+        state.depth = axis.target_separation;
+        if is_separated {
+            return Err(Stop::Separated(axis.dir));
+        }
+        Ok(())
+    }
+
+    /// Completes the state for the next query, which a solver has set for an overlap: adds the direction of the centers,
+    /// or makes it that of separated objects.
+    #[inline(always)]
+    pub fn complete<R>(&self, state: &mut WarmStart, found: &Result<R, Stop>) {
+        match found {
+            Ok(_) if self.wanted.state => {
+                if let Some(centers) = &self.centers {
+                    state.set_center_direction(&centers.v);
+                }
             }
+            Err(Stop::Separated(dir)) => {
+                let axis = state.separating_axis();
+                let target_separation = axis.map_or(0.0, |axis| axis.target_separation);
+                *state = WarmStart::separated(*dir, target_separation, state.radius);
+            }
+            _ => (),
         }
-        let found = solve(state);
-        if let Err(Stop::Separated(n)) = &found {
-            *state = WarmStart::separated(*n, target_separation, state.radius);
-        }
-        found
     }
 
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else
@@ -91,10 +114,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         hit: &mut Penetration,
         set: &mut VertexSet<CAPACITY>,
-        settings: &Settings,
         is_planar: bool,
     ) -> Result<(), Stop> {
-        let tolerance = settings.tolerance;
+        let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let witness = SupportPoint {
             v: hit.point1 - hit.point2,
@@ -111,7 +133,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             set.push(&Vec3::zeros(), &witness);
         }
         // Below a few contact epsilons the witness points are mostly rounding error.
-        let tolerance = larger(settings.tolerance, 4.0 * query.scale.contact_eps());
+        let tolerance = larger(tolerance, 4.0 * query.scale.contact_eps());
         let center = self.centers.as_ref();
         let dir = center.and_then(|c| unit(&-c.v)).unwrap_or(hit.normal);
         let found = contains_origin(&mut query, set, center, &dir, is_planar)?;
@@ -125,123 +147,61 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(())
     }
 
-    /// Returns the state with the direction of the difference of the centers, if both are given.
-    pub fn with_centers(&self, mut state: WarmStart) -> WarmStart {
-        if let Some(center) = &self.centers {
-            state.set_center_direction(&center.v);
-        }
-        state
-    }
-
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not.
-    #[inline]
-    pub fn intersect(&self, state: Option<&mut WarmStart>) -> Result<(), Stop> {
-        let Some(state) = state else {
-            let first = self.cold_start();
-            return intersect(&self.difference, self.centers.as_ref(), &first, false).map(|_| ());
-        };
-        self.with_separating_axis(state, |state| {
-            let is_remembered = state.is_overlap();
-            let first = if is_remembered {
-                state.dir
-            } else {
-                self.cold_start()
-            };
-            let centers = self.centers.as_ref();
-            let dir = intersect(&self.difference, centers, &first, is_remembered)?;
-            // A state with a depth, from a penetration query, is more useful: keep it.
-            if !(state.is_overlap() && state.depth > 0.0) {
-                *state = self.with_centers(WarmStart::towards(dir));
-            }
-            Ok(())
-        })
-    }
-
-    /// Computes the signed distance. `minimum` computes the least depth of overlapping objects.
-    pub fn signed_distance(
-        &self,
-        state: &mut WarmStart,
-        wanted: &Wanted,
-        minimum: impl Fn(&Self, &mut WarmStart, &Settings, &mut Penetration) -> Result<(), Stop>,
-    ) -> Result<Distance, Fault> {
-        let depth = |state: &mut WarmStart, hit: &mut Penetration| {
-            minimum(self, state, &wanted.settings, hit)
+    #[inline(always)]
+    pub fn intersect(&self, state: &mut WarmStart) -> Result<(), Stop> {
+        self.separate(state)?;
+        let is_remembered = state.is_overlap();
+        let first = if is_remembered {
+            state.dir
+        } else {
+            self.cold_start()
         };
         let centers = self.centers.as_ref();
-        signed_distance(
-            &self.difference,
-            centers,
-            wanted,
-            &self.cold_start(),
-            state,
-            depth,
-        )
+        let dir = intersect(&self.difference, centers, &first, is_remembered)?;
+        // A state with a depth, from a penetration query, is more useful: keep it.
+        if self.wanted.state && !(state.is_overlap() && state.depth > 0.0) {
+            *state = WarmStart::towards(dir);
+        }
+        Ok(())
     }
 
     /// Finds a local minimum of the depth by the local search ([`crate::local`]). If that ends without one,
     /// runs the global search from the direction of the upper bound.
-    pub fn local(
-        &self,
-        state: &mut WarmStart,
-        settings: &Settings,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.run_local(state, settings, wants_pos, hit)?;
+    pub fn local(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+        let hit = self.descend(state)?;
         if hit.status == Status::Converged {
-            return Ok(());
+            return Ok(hit);
         }
-        let local_iterations = hit.iterations;
-        let mut limits = EpaLimits::new(settings, 0.0, MAX_DEFAULT_POINTS);
-        limits.max_iterations -= local_iterations;
-        // A local minimum suffices here.
-        if self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)? {
-            hit.status = Status::Converged;
-            if wants_pos {
-                hit.pos = self.cold_contact_position(hit, settings.tolerance)?;
-            }
-        }
+        let iterations = hit.iterations;
+        let mut limits = EpaLimits::new(&self.settings, 0.0, MAX_DEFAULT_POINTS);
+        limits.max_iterations -= iterations;
+        let mut hit = self.minimize(self.centers.as_ref(), &limits, true, state, None)?;
         if self.centers.is_some() {
             // The lower bound would depend on the caller's centers.
             hit.depth_lower = 0.0;
         }
-        hit.iterations += local_iterations;
-        Ok(())
-    }
-
-    /// Computes the contact position without known vertices. Not inlined, so that its set is on the stack only here.
-    #[cold]
-    #[inline(never)]
-    fn cold_contact_position(&self, hit: &Penetration, tolerance: f64) -> Result<Vec3, Fault> {
-        let set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        self.contact_position(&set, hit, tolerance)
+        hit.iterations += iterations;
+        Ok(hit)
     }
 
     /// Runs the local search. Not inlined, so that its stack frame is released before the global search runs.
     #[inline(never)]
-    fn run_local(
-        &self,
-        state: &mut WarmStart,
-        settings: &Settings,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        self.with_separating_axis(state, |state| {
-            if self.centers.is_some_and(|c| state.is_swapped(&c.v)) {
-                *state = WarmStart::COLD;
-            }
-            let start = state.direction().unwrap_or_else(|| self.cold_start());
-            let is_remembered = state.direction().is_some();
-            let tolerance = settings.tolerance;
-            let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
-            let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-            *hit = local::penetration(&mut query, &mut set, &start, is_remembered, settings)?;
-            *state = self.with_centers(WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false));
-            if hit.status == Status::Converged && wants_pos {
-                hit.pos = self.contact_position(&set, hit, settings.tolerance)?;
-            }
-            Ok(())
-        })
+    fn descend(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+        let is_swapped = self.centers.is_some_and(|c| state.is_swapped(&c.v));
+        let remembered = state.direction().filter(|_| !is_swapped);
+        let start = remembered.unwrap_or_else(|| self.cold_start());
+        let tolerance = self.settings.tolerance;
+        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
+        let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
+        let is_remembered = remembered.is_some();
+        let mut hit =
+            local::penetration(&mut query, &mut set, &start, is_remembered, &self.settings)?;
+        *state = WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false);
+        if hit.status == Status::Converged && self.wanted.pos {
+            hit.pos = self.contact_position(&set, &hit)?;
+        }
+        Ok(hit)
     }
 
     /// Improves an uncertified depth by a local search from its direction, to a hundredth of the tolerance. If the
@@ -260,9 +220,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let start = hit.normal;
-        let found = local::penetration(&mut query, &mut set, &start, true, &settings);
-        let Some(found) = if_overlapping(found)? else {
-            return Ok(false);
+        let found = match local::penetration(&mut query, &mut set, &start, true, &settings) {
+            Ok(found) => found,
+            Err(Stop::Separated(_)) => return Ok(false),
+            Err(Stop::Fault(fault)) => return Err(fault),
         };
         let is_minimum = found.status == Status::Converged
             && found.depth <= hit.depth + query.scale.tolerance(settings.tolerance);
@@ -283,16 +244,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds the global minimum of the depth within the larger of the tolerance and 0.1 % of it, with at most
     /// [`MAX_DEFAULT_POINTS`] support points; if these do not suffice, a local search improves the depth. Assumes that
     /// the centers lie in their objects.
-    pub fn penetration(
-        &self,
-        state: &mut WarmStart,
-        settings: &Settings,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        let limits = EpaLimits::new(settings, GAP_REL, MAX_DEFAULT_POINTS);
-        self.run_global(self.centers.as_ref(), state, &limits, None, wants_pos, hit)?;
-        Ok(())
+    pub fn penetration(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+        let limits = EpaLimits::new(&self.settings, GAP_REL, MAX_DEFAULT_POINTS);
+        self.minimize(self.centers.as_ref(), &limits, false, state, None)
     }
 
     /// Finds the global minimum of the depth within the tolerance. The proof uses only support points; the
@@ -300,88 +254,72 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     pub fn proven(
         &self,
         state: &mut WarmStart,
-        settings: &Settings,
         arena: &mut dyn Arena,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<(), Stop> {
-        let limits = EpaLimits::new(settings, 0.0, MAX_PROVEN_POINTS);
-        self.run_global(None, state, &limits, Some(arena), wants_pos, hit)?;
-        Ok(())
+    ) -> Result<Penetration, Stop> {
+        let limits = EpaLimits::new(&self.settings, 0.0, MAX_PROVEN_POINTS);
+        self.minimize(None, &limits, false, state, Some(arena))
     }
 
-    /// Finds the global minimum of the depth from the state. `interior`: a point trusted to lie in D. Returns
-    /// whether a depth that is not certified is a local minimum within the tolerance.
+    /// Finds the global minimum of the depth from the state. `interior`: a point trusted to lie in D.
+    /// `accepts_local`: a local minimum within the tolerance counts as converged.
     #[inline(never)]
-    fn run_global(
+    fn minimize(
         &self,
         interior: Option<&SupportPoint>,
-        state: &mut WarmStart,
         limits: &EpaLimits,
+        accepts_local: bool,
+        state: &mut WarmStart,
         arena: Option<&mut dyn Arena>,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<bool, Stop> {
-        self.with_separating_axis(state, |state| {
-            let ray = self.cold_start();
-            let is_remembered = state.kind == WarmKind::Overlap;
-            let dir = if is_remembered { state.dir } else { ray };
-            let tolerance = limits.gap.tolerance;
-            let mut query = SupportQuery::new(&self.difference, interior, tolerance);
-            // Most queries of separated objects end here, before the request is made.
-            let first = query.evaluate_first(&dir, is_remembered)?;
-            let request = EpaRequest {
-                center: interior,
-                ray,
-                // A separating axis has been evaluated already.
-                warm: match state.kind {
-                    WarmKind::Separated => WarmStart::COLD,
-                    _ => *state,
-                },
-                limits: *limits,
-                wants_points: self.wants_points,
-            };
-            self.run_global_from_first(&mut query, &first, &request, arena, state, wants_pos, hit)
-        })
+    ) -> Result<Penetration, Stop> {
+        let ray = self.cold_start();
+        let is_remembered = state.kind == WarmKind::Overlap;
+        let dir = if is_remembered { state.dir } else { ray };
+        let mut query = SupportQuery::new(&self.difference, interior, limits.gap.tolerance);
+        // Most queries of separated objects end here, before the request is made.
+        let first = query.evaluate_first(&dir, is_remembered)?;
+        let request = EpaRequest {
+            center: interior,
+            ray,
+            // A separating axis has been evaluated already.
+            warm: match state.kind {
+                WarmKind::Separated => WarmStart::COLD,
+                _ => *state,
+            },
+            limits: *limits,
+            wants_points: self.wanted.points,
+        };
+        self.minimize_from(&mut query, &first, &request, accepts_local, state, arena)
     }
 
-    /// Continues [`Pair::run_global`] if the first direction does not separate, and computes the contact
-    /// position.
+    /// Continues [`Pair::minimize`] after the first direction, which does not separate, and computes the contact
+    /// position. Not inlined, so that the known vertices are on the stack only here.
     #[inline(never)]
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "a separate stack frame holds the known vertices"
-    )]
-    fn run_global_from_first(
+    fn minimize_from(
         &self,
         query: &mut SupportQuery<'_, A, B>,
         first: &SupportPoint,
         request: &EpaRequest<'_>,
-        arena: Option<&mut dyn Arena>,
+        accepts_local: bool,
         state: &mut WarmStart,
-        wants_pos: bool,
-        hit: &mut Penetration,
-    ) -> Result<bool, Stop> {
+        arena: Option<&mut dyn Arena>,
+    ) -> Result<Penetration, Stop> {
         let mut set = VertexSet::EMPTY;
-        let warm = epa::penetration::penetration(query, first, request, arena, &mut set, hit)?;
-        if self.keeps_state {
-            *state = self.with_centers(warm);
-        }
+        let mut hit = Penetration::default();
+        *state = epa::penetration::penetration(query, first, request, arena, &mut set, &mut hit)?;
         if hit.status == Status::Converged {
-            if wants_pos {
-                hit.pos = self.contact_position(&set, hit, request.limits.gap.tolerance)?;
+            if self.wanted.pos {
+                hit.pos = self.contact_position(&set, &hit)?;
             }
-            return Ok(false);
+            return Ok(hit);
         }
         let is_minimum = hit.status != Status::InconsistentSupport
-            && self.improve_locally(hit, &request.limits)?;
-        let is_certified = hit.status == Status::Converged;
-        hit.pos = if is_certified && wants_pos {
-            self.cold_contact_position(hit, request.limits.gap.tolerance)?
-        } else {
-            hit.middle()
-        };
-        Ok(is_minimum && !is_certified)
+            && self.improve_locally(&mut hit, &request.limits)?;
+        hit.status = hit.status.unless(is_minimum && accepts_local);
+        hit.pos = hit.middle();
+        if hit.status == Status::Converged && self.wanted.pos {
+            hit.pos = self.cold_contact_position(&hit)?;
+        }
+        Ok(hit)
     }
 
     /// Returns the contact position of a hit. `set`: the known vertices of its search.
@@ -390,9 +328,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         set: &VertexSet<N>,
         hit: &Penetration,
-        tolerance: f64,
     ) -> Result<Vec3, Fault> {
+        let tolerance = self.settings.tolerance;
         contact_position(&self.difference, set, hit, self.centers.as_ref(), tolerance)
+    }
+
+    /// Computes the contact position without known vertices. Not inlined, so that its set is on the stack only here.
+    #[cold]
+    #[inline(never)]
+    fn cold_contact_position(&self, hit: &Penetration) -> Result<Vec3, Fault> {
+        let set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
+        self.contact_position(&set, hit)
     }
 }
 
@@ -400,12 +346,31 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, capsule, corners, difference, hull, placed};
+    use crate::shapes::{Random, Shape, capsule, corners, difference, hull, placed};
 
     const SETTINGS: Settings = Settings {
         tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
         max_iterations: 1000,
     };
+
+    /// Returns the pair of two objects, whose caller reads everything.
+    fn pair_of<'a>(
+        a: impl SupportMap + 'a,
+        b: impl SupportMap + 'a,
+        centers: Option<[Vec3; 2]>,
+    ) -> Pair<Shape<'a>, Shape<'a>> {
+        Pair {
+            difference: difference(a, b),
+            centers: centers.map(|[v1, v2]| SupportPoint { v: v1 - v2, v1, v2 }),
+            first_dir: None,
+            settings: SETTINGS,
+            wanted: Wanted {
+                state: true,
+                points: true,
+                pos: true,
+            },
+        }
+    }
 
     /// Returns the number of support points, the depth and the new state of a query from this state.
     fn local_query<A: SupportMap, B: SupportMap>(
@@ -413,15 +378,8 @@ mod tests {
         b: B,
         mut state: WarmStart,
     ) -> (u64, f64, WarmStart) {
-        let pair = Pair {
-            difference: difference(a, b),
-            centers: None,
-            first_dir: None,
-            keeps_state: true,
-            wants_points: true,
-        };
-        let mut hit = Penetration::default();
-        pair.local(&mut state, &SETTINGS, true, &mut hit).unwrap();
+        let pair = pair_of(a, b, None);
+        let hit = pair.local(&mut state).unwrap();
         assert_eq!(hit.status, Status::Converged);
         (pair.difference.supports(), hit.depth, state)
     }
@@ -459,20 +417,9 @@ mod tests {
         for _ in 0..100 {
             let b = placed(&a, &r.rotation(), r.vector(1.0));
             let v1 = r.vector(3.0);
-            let pair = Pair {
-                difference: difference(hull(&a), hull(&b)),
-                centers: Some(SupportPoint {
-                    v: v1,
-                    v1,
-                    v2: Vec3::zeros(),
-                }),
-                first_dir: None,
-                keeps_state: true,
-                wants_points: true,
-            };
+            let pair = pair_of(hull(&a), hull(&b), Some([v1, Vec3::zeros()]));
             let mut state = WarmStart::guess(&r.direction());
-            let mut hit = Penetration::default();
-            if pair.local(&mut state, &SETTINGS, true, &mut hit).is_ok() {
+            if let Ok(hit) = pair.local(&mut state) {
                 assert_eq!(hit.depth_lower, 0.0);
             }
         }
@@ -492,23 +439,13 @@ mod tests {
                 placed(&plate, &turn, Vec3::zeros()),
                 placed(&plate, &turn, at),
             );
-            let pair = Pair {
-                difference: difference(hull(&a), hull(&b)),
-                centers: Some(SupportPoint {
-                    v: -at,
-                    v1: Vec3::zeros(),
-                    v2: at,
-                }),
-                first_dir: None,
-                keeps_state: true,
-                wants_points: true,
-            };
+            let pair = pair_of(hull(&a), hull(&b), Some([Vec3::zeros(), at]));
             let mut state = WarmStart::guess(&r.direction());
-            if pair.intersect(Some(&mut state)).is_ok() {
+            if pair.intersect(&mut state).is_ok() {
                 let before = pair.difference.supports();
-                pair.intersect(Some(&mut state)).unwrap();
+                pair.intersect(&mut state).unwrap();
                 let after = pair.difference.supports();
-                pair.intersect(None).unwrap();
+                pair.intersect(&mut { WarmStart::COLD }).unwrap();
                 (again, cold) = (
                     again + after - before,
                     cold + pair.difference.supports() - after,

@@ -78,6 +78,8 @@ pub struct Penetration {
     pub point1: Vec3,
     /// Witness point on obj2.
     pub point2: Vec3,
+    /// Number of support points, all searches of the query together.
+    pub support_points: u64,
     /// Number of iterations of the solver, as [`Settings::max_iterations`] counts them.
     pub iterations: u64,
     /// Why the search ended.

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules, from the bottom to the top.
-const MODULES: [&str; 14] = [
+const MODULES: [&str; 15] = [
     "math",
     "types",
     "trace",
@@ -20,6 +20,7 @@ const MODULES: [&str; 14] = [
     "contact",
     "query",
     "paper",
+    "solver",
     "ffi",
     "api",
 ];

@@ -3,7 +3,7 @@
 
 //! Allocates the memory of the largest polytopes: one block of C's heap, if a query needs it.
 //!
-//! A C callback may throw or longjmp over this frame, so nothing in [`with_buffers`] has a destructor: it
+//! A C callback may throw or longjmp over the frame of [`LargeBuffers`], which therefore has no destructor: its owner
 //! frees the block when the query returns, and a callback that unwinds leaks it. [`OwnedBuffers`] frees
 //! its block when it is dropped; it is for shapes in Rust, whose panics run destructors.
 
@@ -15,11 +15,11 @@ use crate::minkowski::support::Fault;
 
 /// The block of one query; empty until the query asks for it.
 #[derive(Default)]
-struct LargeBuffers(Option<NonNull<EpaBuffers>>);
+pub struct LargeBuffers(Option<NonNull<EpaBuffers>>);
 
 impl LargeBuffers {
     /// Frees the block, if any.
-    fn free(&mut self) {
+    pub fn free(&mut self) {
         if let Some(block) = self.0.take() {
             // SAFETY: [heap]; the block is no longer used.
             unsafe { free(block.as_ptr().cast()) };
@@ -41,14 +41,6 @@ impl Arena for LargeBuffers {
         // SAFETY: [heap]; zero bytes are a valid EpaBuffers, which holds only numbers.
         Ok(unsafe { &mut *block.as_ptr() })
     }
-}
-
-/// Runs `query` with a source of buffers, and then frees their block.
-pub fn with_buffers<R>(query: impl FnOnce(&mut dyn Arena) -> R) -> R {
-    let mut block = LargeBuffers::default();
-    let result = query(&mut block);
-    block.free();
-    result
 }
 
 /// A source of buffers that frees its block when it is dropped.

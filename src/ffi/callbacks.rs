@@ -8,7 +8,7 @@ use core::ffi::{c_ulong, c_void};
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::query::Pair;
+use crate::query::{Pair, Wanted};
 use crate::types::Settings;
 
 /// An object whose support function is a C callback.
@@ -137,26 +137,26 @@ impl QueryArgs {
         Some(dir.into())
     }
 
-    /// Returns the pair with its centers or first direction; `None` if `ccd` or a callback that the
-    /// query requires is NULL, or a center is not finite. `has_state`: true if the caller keeps a state.
+    /// Returns the pair with its centers or first direction, and without a tolerance; `None` if `ccd` or a callback that
+    /// the query requires is NULL, or a center is not finite.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn pair(&self, kind: QueryKind, has_state: bool) -> Option<Pair<Object, Object>> {
+    pub unsafe fn pair(&self, kind: QueryKind, wanted: Wanted) -> Option<Pair<Object, Object>> {
         // SAFETY: the caller's guarantees are those of the callee.
         unsafe {
             let (obj1, obj2) = self.objects()?;
-            let center = match kind {
+            let centers = match kind {
                 QueryKind::Gjk => None,
                 _ => self.center(),
             };
-            if center.is_some_and(|c| !c.v.sum().is_finite())
-                || kind == QueryKind::Mpr && center.is_none()
+            if centers.is_some_and(|c| !c.v.sum().is_finite())
+                || kind == QueryKind::Mpr && centers.is_none()
             {
                 return None;
             }
-            let first_dir = match center {
+            let first_dir = match centers {
                 Some(_) => None,
                 None => self.first_dir(),
             };
@@ -165,25 +165,24 @@ impl QueryArgs {
             }
             Some(Pair {
                 difference: MinkowskiDifference::new(obj1, obj2),
-                centers: center,
+                centers,
                 first_dir,
-                keeps_state: has_state,
-                wants_points: true,
+                settings: Settings {
+                    tolerance: f64::INFINITY,
+                    max_iterations: ITERATION_CAP,
+                },
+                wanted,
             })
         }
     }
 
-    /// Returns the pair and the settings; `None` if [`QueryArgs::pair`] returns `None`. If the tolerance is
+    /// Returns the pair with the caller's settings; `None` if [`QueryArgs::pair`] returns `None`. If the tolerance is
     /// negative or NaN, libccd's calls use [`DEFAULT_TOLERANCE`]; other queries return `None`.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn prepare(
-        &self,
-        kind: QueryKind,
-        has_state: bool,
-    ) -> Option<(Pair<Object, Object>, Settings)> {
+    pub unsafe fn prepare(&self, kind: QueryKind, wanted: Wanted) -> Option<Pair<Object, Object>> {
         if self.ccd.is_null() {
             return None;
         }
@@ -201,15 +200,17 @@ impl QueryArgs {
                 }
                 tolerance = DEFAULT_TOLERANCE;
             }
-            let pair = self.pair(kind, has_state)?;
+            let pair = self.pair(kind, wanted)?;
             let max: c_ulong = (*self.ccd).max_iterations;
             #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
             let max_iterations = ITERATION_CAP.min(max as u64);
-            let settings = Settings {
-                tolerance: tolerance.into(),
-                max_iterations,
-            };
-            Some((pair, settings))
+            Some(Pair {
+                settings: Settings {
+                    tolerance: tolerance.into(),
+                    max_iterations,
+                },
+                ..pair
+            })
         }
     }
 }

@@ -5,13 +5,15 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::arena;
 use super::callbacks::{QueryArgs, QueryKind};
+use super::run::{libccd_code_of, run_query};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
-use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_code, write_outputs};
-use super::warm::penetration::run_query;
+use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, write_outputs};
 use crate::math::Real;
+use crate::minkowski::support_query::Stop;
+use crate::query::Wanted;
+use crate::solver::Solver;
 use crate::types::Penetration;
 
 /// Reports whether the objects overlap. Starts from the centers, which must lie in their objects.
@@ -41,11 +43,9 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     obj2: *const c_void,
     ccd: *const ccd_t,
 ) -> c_int {
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Gjk);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe {
-        let pair = QueryArgs { obj1, obj2, ccd }.pair(QueryKind::Gjk, false);
-        intersect(pair, core::ptr::null_mut())
-    }
+    unsafe { intersect(args, kind, core::ptr::null_mut()) }
 }
 
 /// Computes penetration depth, direction and contact position. Starts from the centers, which must
@@ -74,30 +74,22 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
 }
 
-/// Computes the global minimum from first_dir and passes a hit to `write_hit`. Returns the codes of
-/// [`ccdGJKPenetration`].
+/// Computes the global minimum from first_dir.
+///
+/// # Errors
+/// As [`run_query`].
 ///
 /// # Safety
-/// \[inputs\] of the module contract.
-#[inline(never)]
-unsafe fn gjk_penetration(
-    query: QueryArgs,
-    wants_pos: bool,
-    write_hit: &mut dyn FnMut(&Penetration),
-) -> c_int {
+/// As [`run_query`].
+unsafe fn gjk_penetration(args: QueryArgs, wants_pos: bool) -> Result<Penetration, Stop> {
+    let wanted = Wanted {
+        state: false,
+        points: wants_pos,
+        pos: wants_pos,
+    };
+    let (kind, solver) = (QueryKind::Gjk, Solver::Proven);
     // SAFETY: the caller's guarantees are those of the callee.
-    libccd_code(unsafe {
-        run_query(
-            query,
-            QueryKind::Gjk,
-            core::ptr::null_mut(),
-            wants_pos,
-            |pair, state, settings, hit| {
-                arena::with_buffers(|arena| pair.proven(state, settings, arena, wants_pos, hit))
-            },
-            |hit, _| write_hit(hit),
-        )
-    })
+    unsafe { run_query(args, kind, solver, core::ptr::null_mut(), wanted) }
 }
 
 /// Computes the globally least penetration depth, its direction and the contact position. Starts
@@ -121,11 +113,12 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callee; [outputs].
+    // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        gjk_penetration(QueryArgs { obj1, obj2, ccd }, !pos.is_null(), &mut |hit| {
-            write_outputs(hit, depth, dir, pos);
-        })
+        match gjk_penetration(QueryArgs { obj1, obj2, ccd }, !pos.is_null()) {
+            Ok(hit) => write_outputs(&hit, depth, dir, pos),
+            Err(stop) => libccd_code_of(&stop),
+        }
     }
 }
 
@@ -140,10 +133,13 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
-        gjk_penetration(QueryArgs { obj1, obj2, ccd }, false, &mut |hit| {
-            if let Some(sep) = sep.as_mut() {
-                *sep = (hit.dir * hit.depth).into();
-            }
-        })
+        let hit = match gjk_penetration(QueryArgs { obj1, obj2, ccd }, false) {
+            Ok(hit) => hit,
+            Err(stop) => return libccd_code_of(&stop),
+        };
+        if let Some(sep) = sep.as_mut() {
+            *sep = (hit.dir * hit.depth).into();
+        }
     }
+    0
 }

@@ -12,9 +12,7 @@ use super::callbacks::{QueryArgs, QueryKind};
 use super::types::ccd_t;
 use super::warm::penetration::{ccd_penetration_t, fill};
 use super::warm::state::ccd_warm_t;
-use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
-use crate::types::Settings;
+use crate::solver::Solver;
 
 /// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
 /// shortcut of its Section III-C. The result is sound: depth is the least support value evaluated, and an overlap is
@@ -34,13 +32,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = QueryArgs { obj1, obj2, ccd };
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe {
-        let solve =
-            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
-                pair.incremental(None, state, settings, wants, hit)
-            };
-        fill(query, QueryKind::Penetration, warm, want, out, solve)
-    }
+    unsafe { fill(args, kind, Solver::Incremental, warm, want, out) }
 }

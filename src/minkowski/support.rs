@@ -69,6 +69,8 @@ pub enum Fault {
     /// A support function returned a point that is not finite, or the fourth power of |v1 − v2|
     /// overflows (above 1e77 m).
     NonFinite,
+    /// An argument, a callback or a center is missing or invalid.
+    BadInput,
     /// An allocation failed.
     NoMemory,
 }

@@ -5,8 +5,8 @@
 //!
 //! 1. The signed distance is −min h(n) over all unit n: the distance of separated objects, minus the
 //!    penetration depth of overlapping ones. −h(n) is a lower bound for every n.
-//! 2. For separated objects both bounds come from [`closest_points`], for overlapping ones from the global
-//!    minimum of the depth, which the caller provides as a function.
+//! 2. For separated objects both bounds come from [`closest_points`], for overlapping ones from the proven minimum of
+//!    the depth.
 //! 3. A *margin* is the radius of a ball added to an object, the *core*. It increases h(n) by its
 //!    radius for every n, so the signed distance is exactly that of the cores minus both margins, for
 //!    separated and for overlapping objects.
@@ -16,30 +16,30 @@
 //! Outputs: both bounds are valid, whatever the status, except for [`Status::InconsistentSupport`]. The points lie on
 //! the surfaces of the objects with their margins.
 
+use crate::epa::penetration::Arena;
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
 use crate::minkowski::sphere_fit::SphereFit;
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
+use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
 use crate::types::{Penetration, Settings, Status};
 
-/// The input of a query besides the objects.
+/// The radii of the balls added to the objects, and the distance of interest.
 #[derive(Clone, Copy, Debug)]
-pub struct Wanted {
+pub struct Margins {
     /// Radius of the ball around obj1, metres, not negative.
     pub margin1: f64,
     /// Radius of the ball around obj2, metres, not negative.
     pub margin2: f64,
     /// The search ends when the distance is proven to be greater than this, metres.
     pub max_distance: f64,
-    /// The tolerance (of the gap between the bounds) and the limits.
-    pub settings: Settings,
 }
 
-impl Wanted {
+impl Margins {
     /// Returns the sum of the margins, metres.
-    fn margin(&self) -> f64 {
+    fn sum(&self) -> f64 {
         self.margin1 + self.margin2
     }
 }
@@ -65,83 +65,91 @@ pub struct Distance {
     pub status: Status,
 }
 
-/// Computes the signed distance of the objects with their margins. Starts from the state of the pair's last
-/// query, else from unit `cold_dir`. `minimum` computes the penetration depth of the cores from a state; if
-/// they are separated, it stores the separating axis in the state.
-///
-/// # Errors
-/// [`Fault`].
-pub fn signed_distance<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    centers: Option<&SupportPoint>,
-    wanted: &Wanted,
-    cold_dir: &Vec3,
-    state: &mut WarmStart,
-    mut minimum: impl FnMut(&mut WarmStart, &mut Penetration) -> Result<(), Stop>,
-) -> Result<Distance, Fault> {
-    // Returns the result for overlapping cores; `None` if they are separated.
-    let mut depth = |state: &mut WarmStart| {
-        let mut hit = Penetration::default();
-        let found = if_overlapping(minimum(state, &mut hit))?;
-        Ok(found.map(|()| overlapping_distance(&hit, wanted)))
-    };
-    if state.is_overlap() {
-        if let Some(distance) = depth(state)? {
-            return Ok(distance);
+impl<A: SupportMap, B: SupportMap> Pair<A, B> {
+    /// Computes the signed distance of the objects with their margins, from the state of the last query.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    pub fn signed_distance(
+        &self,
+        margins: &Margins,
+        state: &mut WarmStart,
+        arena: &mut dyn Arena,
+    ) -> Result<Distance, Fault> {
+        if state.is_overlap() {
+            if let Some(hit) = self.depth(state, arena)? {
+                return Ok(overlapping_distance(&hit, margins));
+            }
         }
-    }
-    let axis = state.separating_axis();
-    let start = axis.map_or(*cold_dir, |axis| axis.dir);
-    let (mut cores, radius, mut contact_eps) =
-        find_cores(md, centers, wanted, &start, axis.is_some(), state.radius)?;
-    // Without a separating plane the overlap test decides, however close the bounds are.
-    let is_at_limit = matches!(cores.status, Status::IterationLimit | Status::SupportLimit);
-    if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
-        *state = WarmStart::towards(cores.normal);
-        if let Some(distance) = depth(state)? {
-            return Ok(distance);
+        let (mut cores, radius, mut contact_eps) = self.find_cores(margins, state)?;
+        // Without a separating plane the overlap test decides, however close the bounds are.
+        let is_at_limit = matches!(cores.status, Status::IterationLimit | Status::SupportLimit);
+        if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
+            *state = WarmStart::towards(cores.normal);
+            if let Some(hit) = self.depth(state, arena)? {
+                return Ok(overlapping_distance(&hit, margins));
+            }
+            // The overlap test found no overlap. Use its axis, even if the support value there is positive within
+            // rounding, and keep the witness points, which are rounded too.
+            let normal = state.dir;
+            let h = normal.dot(&self.difference.support(&normal)?.v);
+            contact_eps = 2.0 * larger(contact_eps, h.abs());
+            (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
+            let is_met = cores.upper <= larger(contact_eps, self.settings.tolerance);
+            cores.status = Status::Rounding.unless(is_met);
         }
-        // The overlap test found no overlap. Use its axis, even if the support value there is positive within
-        // rounding, and keep the witness points, which are rounded too.
-        let normal = state.dir;
-        let h = normal.dot(&md.support(&normal)?.v);
-        contact_eps = 2.0 * larger(contact_eps, h.abs());
-        (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
-        let is_met = cores.upper <= larger(contact_eps, wanted.settings.tolerance);
-        cores.status = Status::Rounding.unless(is_met);
+        let distance = separated_distance(&cores, contact_eps, self.settings.tolerance, margins);
+        *state = WarmStart::separated(cores.normal, larger(distance.lower, 0.0), radius);
+        Ok(distance)
     }
-    let distance = separated_distance(&cores, contact_eps, wanted);
-    *state = WarmStart::separated(cores.normal, larger(distance.lower, 0.0), radius);
-    Ok(distance)
-}
 
-/// Finds the closest points of the cores. Returns them with the radii of the sphere fits and the contact
-/// epsilon, metres. Not inlined, so that its stack frame is released before `minimum` runs.
-#[inline(never)]
-fn find_cores<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    centers: Option<&SupportPoint>,
-    wanted: &Wanted,
-    start: &Vec3,
-    is_remembered: bool,
-    radius: [f64; 2],
-) -> Result<(ClosestPoints, [f64; 2], f64), Fault> {
-    let mut query = SupportQuery::new(md, centers, wanted.settings.tolerance);
-    let mut fit = SphereFit::from_radius(radius);
-    let goal = Goal {
-        tolerance: wanted.settings.tolerance,
-        margin: wanted.margin(),
-        max_distance: wanted.max_distance,
-        max_samples: wanted.settings.max_iterations,
-    };
-    let cores = closest_points(&mut query, &mut fit, start, is_remembered, &goal)?;
-    Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
+    /// Finds the penetration depth of the cores. `None` if they are separated; the state then has the separating axis.
+    fn depth(
+        &self,
+        state: &mut WarmStart,
+        arena: &mut dyn Arena,
+    ) -> Result<Option<Penetration>, Fault> {
+        let found = self.proven(state, arena);
+        self.complete(state, &found);
+        match found {
+            Ok(hit) => Ok(Some(hit)),
+            Err(Stop::Separated(_)) => Ok(None),
+            Err(Stop::Fault(fault)) => Err(fault),
+        }
+    }
+
+    /// Finds the closest points of the cores, from the separating axis of the state. Returns them with the radii of the
+    /// sphere fits and the contact epsilon, metres. Not inlined, so that its stack frame is released before the depth is
+    /// computed.
+    #[inline(never)]
+    fn find_cores(
+        &self,
+        margins: &Margins,
+        state: &WarmStart,
+    ) -> Result<(ClosestPoints, [f64; 2], f64), Fault> {
+        let Settings {
+            tolerance,
+            max_iterations,
+        } = self.settings;
+        let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
+        let mut fit = SphereFit::from_radius(state.radius);
+        let goal = Goal {
+            tolerance,
+            margin: margins.sum(),
+            max_distance: margins.max_distance,
+            max_samples: max_iterations,
+        };
+        let axis = state.separating_axis();
+        let start = axis.map_or_else(|| self.cold_start(), |axis| axis.dir);
+        let cores = closest_points(&mut query, &mut fit, &start, axis.is_some(), &goal)?;
+        Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
+    }
 }
 
 /// Returns the signed distance of objects with overlapping cores.
-fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
+fn overlapping_distance(hit: &Penetration, margins: &Margins) -> Distance {
     let n = hit.normal;
-    let margin = wanted.margin();
+    let margin = margins.sum();
     // Avoids returning -0.0.
     let lower = if hit.depth + margin > 0.0 {
         -hit.depth - margin
@@ -152,17 +160,22 @@ fn overlapping_distance(hit: &Penetration, wanted: &Wanted) -> Distance {
         lower,
         upper: larger(-hit.depth_lower - margin, lower),
         normal: n,
-        point1: hit.point1 + n * wanted.margin1,
-        point2: hit.point2 - n * wanted.margin2,
+        point1: hit.point1 + n * margins.margin1,
+        point2: hit.point2 - n * margins.margin2,
         iterations: hit.iterations,
         is_hit: lower < 0.0,
         status: hit.status,
     }
 }
 
-/// Returns the signed distance of objects with separated cores. `contact_eps`: metres.
-fn separated_distance(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) -> Distance {
-    let margin = wanted.margin();
+/// Returns the signed distance of objects with separated cores. `contact_eps`, `tolerance`: metres.
+fn separated_distance(
+    cores: &ClosestPoints,
+    contact_eps: f64,
+    tolerance: f64,
+    margins: &Margins,
+) -> Distance {
+    let margin = margins.sum();
     // The witness points are on the line through the closest points of the cores; if the cores touch, that
     // line is rounding error, and the normal replaces it.
     let along = if cores.upper > contact_eps {
@@ -178,14 +191,14 @@ fn separated_distance(cores: &ClosestPoints, contact_eps: f64, wanted: &Wanted) 
         lower = 0.0;
         upper = larger(upper, 0.0);
         // The gap is that of the clamped bounds.
-        status = status.unless(upper <= larger(contact_eps, wanted.settings.tolerance));
+        status = status.unless(upper <= larger(contact_eps, tolerance));
     }
     Distance {
         lower,
         upper: larger(upper, lower),
         normal: cores.normal,
-        point1: cores.point1 + along * wanted.margin1,
-        point2: cores.point2 - along * wanted.margin2,
+        point1: cores.point1 + along * margins.margin1,
+        point2: cores.point2 - along * margins.margin2,
         iterations: cores.iterations,
         is_hit: lower < 0.0,
         status,

@@ -5,17 +5,18 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::arena;
+use super::super::arena::LargeBuffers;
 use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::run::code_of;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, point_if};
-use super::state::{ccd_warm_t, with_state};
+use super::state::{ccd_warm_t, read, store};
 use crate::math::{Real, lower_to_real};
-use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
-use crate::query::signed_distance::{Distance, Wanted};
-use crate::types::{Settings, Status};
+use crate::minkowski::support_query::Stop;
+use crate::query::Wanted;
+use crate::query::signed_distance::{Distance, Margins};
+use crate::types::Status;
 
 /// Result of ccdSignedDistance. A field that was not requested is zero.
 #[repr(C)]
@@ -83,35 +84,42 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
     want: c_uint,
     out: *mut ccd_distance_t,
 ) -> c_int {
-    let margins = margin1 + margin2;
-    let valid = margin1 >= 0.0 && margin2 >= 0.0 && max_distance >= 0.0 && margins < Real::INFINITY;
-    if out.is_null() || want & !CCD_WANT_ALL != 0 || !valid {
+    let is_valid = margin1 >= 0.0
+        && margin2 >= 0.0
+        && max_distance >= 0.0
+        && margin1 + margin2 < Real::INFINITY;
+    if out.is_null() || want & !CCD_WANT_ALL != 0 || !is_valid {
         return CCD_BAD_INPUT;
     }
-    let query = QueryArgs { obj1, obj2, ccd };
-    // SAFETY: the caller's guarantees are those of the callee; [inputs], [outputs].
+    let margins = Margins {
+        margin1: margin1.into(),
+        margin2: margin2.into(),
+        max_distance: max_distance.into(),
+    };
+    let wanted = Wanted {
+        state: !warm.is_null(),
+        points: true,
+        pos: false,
+    };
+    // SAFETY: the caller's guarantees are those of the callees; [outputs].
     unsafe {
-        let Some((pair, settings)) = query.prepare(QueryKind::Distance, !warm.is_null()) else {
+        let args = QueryArgs { obj1, obj2, ccd };
+        let Some(pair) = args.prepare(QueryKind::Distance, wanted) else {
             return CCD_BAD_INPUT;
         };
-        let wanted = Wanted {
-            margin1: margin1.into(),
-            margin2: margin2.into(),
-            max_distance: max_distance.into(),
-            settings,
+        let (mut state, mut buffers) = (read(warm), LargeBuffers::default());
+        let found = pair.signed_distance(&margins, &mut state, &mut buffers);
+        buffers.free();
+        let distance = match found {
+            Ok(distance) => distance,
+            Err(fault) => return code_of(&Stop::Fault(fault)),
         };
-        let minimum =
-            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, hit: &mut _| {
-                arena::with_buffers(|arena| pair.proven(state, settings, arena, false, hit))
-            };
-        with_state(warm, |state| {
-            let distance = pair.signed_distance(state, &wanted, minimum)?;
-            *out = ccd_distance_t::new(&distance, want, pair.difference.supports());
-            Ok(match (distance.status, distance.is_hit) {
-                (Status::Converged, true) => CCD_HIT,
-                (Status::Converged, false) => CCD_MISS,
-                _ => CCD_LIMIT,
-            })
-        })
+        store(warm, &state);
+        *out = ccd_distance_t::new(&distance, want, pair.difference.supports());
+        match (distance.status, distance.is_hit) {
+            (Status::Converged, true) => CCD_HIT,
+            (Status::Converged, false) => CCD_MISS,
+            _ => CCD_LIMIT,
+        }
     }
 }

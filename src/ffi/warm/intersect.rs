@@ -5,34 +5,36 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{Object, QueryArgs, QueryKind};
+use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::run::complete;
 use super::super::types::ccd_t;
-use super::state::{ccd_warm_t, with_state};
-use crate::minkowski::support_query::if_overlapping;
-use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
+use super::state::{ccd_warm_t, read};
+use crate::query::Wanted;
 
-/// Tests a pair for overlap with the caller's state. Returns 1 or 0.
+/// Tests a pair for overlap with the caller's state. Returns 1 or 0: a fault counts as no overlap.
 ///
 /// # Safety
 /// \[inputs\] and \[outputs\] of the module contract.
 pub(in crate::ffi) unsafe fn intersect(
-    pair: Option<Pair<Object, Object>>,
+    args: QueryArgs,
+    kind: QueryKind,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let Some(pair) = pair else {
-        return 0;
+    let wanted = Wanted {
+        state: !warm.is_null(),
+        points: false,
+        pos: false,
     };
-    if warm.is_null() {
-        return c_int::from(pair.intersect(None).is_ok());
+    // SAFETY: the caller's guarantees are those of the callees.
+    unsafe {
+        let Some(pair) = args.pair(kind, wanted) else {
+            return 0;
+        };
+        let mut state = read(warm);
+        let found = pair.intersect(&mut state);
+        complete(warm, state, &pair, &found);
+        c_int::from(found.is_ok())
     }
-    let solve = |state: &mut WarmStart| {
-        let overlap = if_overlapping(pair.intersect(Some(state)))?;
-        Ok(c_int::from(overlap.is_some()))
-    };
-    // Faults have negative codes; they count as no overlap.
-    // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { with_state(warm, solve) }.max(0)
 }
 
 /// Reports whether the objects overlap.
@@ -51,7 +53,7 @@ pub unsafe extern "C-unwind" fn ccdIntersect(
     ccd: *const ccd_t,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let query = QueryArgs { obj1, obj2, ccd };
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { intersect(query.pair(QueryKind::Penetration, !warm.is_null()), warm) }
+    unsafe { intersect(args, kind, warm) }
 }

@@ -7,24 +7,16 @@
 use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::run::{libccd_code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::intersect::intersect;
-use super::penetration::run_query;
 use super::state::ccd_warm_t;
 use crate::math::Real;
+use crate::query::Wanted;
+use crate::solver::Solver;
 use crate::types::Penetration;
 
-/// Converts a code of the extension to libccd's.
-pub(in crate::ffi) fn libccd_code(code: c_int) -> c_int {
-    match code {
-        CCD_HIT | CCD_LIMIT => 0,
-        CCD_NO_MEMORY => -2,
-        _ => CCD_MISS,
-    }
-}
-
-/// Writes those outputs of libccd's calls that are not NULL.
+/// Writes those outputs of libccd's calls that are not NULL. Returns libccd's code of a hit.
 ///
 /// # Safety
 /// \[outputs\] of the module contract.
@@ -33,7 +25,7 @@ pub(in crate::ffi) unsafe fn write_outputs(
     depth: *mut Real,
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
-) {
+) -> c_int {
     // SAFETY: [outputs].
     unsafe {
         if let Some(depth) = depth.as_mut() {
@@ -46,6 +38,7 @@ pub(in crate::ffi) unsafe fn write_outputs(
             *pos = hit.pos.into();
         }
     }
+    0
 }
 
 /// Computes the penetration depth as ccdMPRPenetration does, with a state.
@@ -67,17 +60,19 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callee; [outputs].
-    libccd_code(unsafe {
-        run_query(
-            QueryArgs { obj1, obj2, ccd },
-            QueryKind::Mpr,
-            warm,
-            !pos.is_null(),
-            |pair, state, settings, hit| pair.penetration(state, settings, !pos.is_null(), hit),
-            |hit, _| write_outputs(hit, depth, dir, pos),
-        )
-    })
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Mpr);
+    let wanted = Wanted {
+        state: !warm.is_null(),
+        points: !pos.is_null(),
+        pos: !pos.is_null(),
+    };
+    // SAFETY: the caller's guarantees are those of the callees.
+    unsafe {
+        match run_query(args, kind, Solver::Global, warm, wanted) {
+            Ok(hit) => write_outputs(&hit, depth, dir, pos),
+            Err(stop) => libccd_code_of(&stop),
+        }
+    }
 }
 
 /// Reports whether the objects overlap as ccdMPRIntersect does, with a state.
@@ -94,7 +89,6 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     ccd: *const ccd_t,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let query = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { intersect(query.pair(QueryKind::Mpr, !warm.is_null()), warm) }
+    unsafe { intersect(QueryArgs { obj1, obj2, ccd }, QueryKind::Mpr, warm) }
 }

@@ -5,16 +5,15 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{Object, QueryArgs, QueryKind};
+use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::run::{code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
-use super::state::{ccd_warm_t, with_state};
+use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT};
+use super::state::ccd_warm_t;
 use crate::math::{Real, Vec3, lower_to_real};
-use crate::minkowski::support_query::{Stop, if_overlapping};
-use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
-use crate::trace;
-use crate::types::{Penetration, Settings, Status};
+use crate::query::Wanted;
+use crate::solver::Solver;
+use crate::types::{Penetration, Status};
 
 /// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
 /// May call one support function without the other.
@@ -73,7 +72,7 @@ pub(in crate::ffi) fn point_if(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
 }
 
 impl ccd_penetration_t {
-    fn new(hit: &Penetration, want: c_uint, supports: u64) -> Self {
+    fn new(hit: &Penetration, want: c_uint) -> Self {
         Self {
             depth: hit.depth as Real,
             depth_lower: lower_to_real(hit.depth_lower),
@@ -82,88 +81,44 @@ impl ccd_penetration_t {
             pos: point_if(want & CCD_WANT_POS, &hit.pos),
             point1: point_if(want & CCD_WANT_POINTS, &hit.point1),
             point2: point_if(want & CCD_WANT_POINTS, &hit.point2),
-            support_points: supports as c_ulong,
+            support_points: hit.support_points as c_ulong,
             iterations: hit.iterations as c_ulong,
             status: hit.status as c_int,
         }
     }
 }
 
-/// Runs `solve` with the caller's state, or a cold one where `warm` is NULL, and passes an overlap
-/// and the number of support points to `write_hit`, which reads the witness points and the contact position only with
-/// `wants_points`. Returns the extension's code.
-///
-/// # Safety
-/// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
-/// with a destructor is alive here.
-pub(in crate::ffi) unsafe fn run_query(
-    query: QueryArgs,
-    kind: QueryKind,
-    warm: *mut ccd_warm_t,
-    wants_points: bool,
-    solve: impl FnOnce(
-        &Pair<Object, Object>,
-        &mut WarmStart,
-        &Settings,
-        &mut Penetration,
-    ) -> Result<(), Stop>,
-    write_hit: impl FnOnce(&Penetration, u64),
-) -> c_int {
-    // SAFETY: [inputs]; `solve` runs callbacks, [callbacks].
-    unsafe {
-        let Some((mut pair, settings)) = query.prepare(kind, !warm.is_null()) else {
-            return CCD_BAD_INPUT;
-        };
-        pair.wants_points = wants_points;
-        with_state(warm, |state| {
-            let mut hit = Penetration::default();
-            if if_overlapping(solve(&pair, state, &settings, &mut hit))?.is_none() {
-                trace::end(None);
-                return Ok(CCD_MISS);
-            }
-            trace::end(Some(&hit));
-            write_hit(&hit, pair.difference.supports());
-            Ok(match hit.status {
-                Status::Converged => CCD_HIT,
-                _ => CCD_LIMIT,
-            })
-        })
-    }
-}
-
-/// Runs a penetration query of the extension and fills `out`. The flag of `solve` requests the
-/// contact position.
+/// Runs a penetration query of the extension and fills `out`. Returns the extension's code.
 ///
 /// # Safety
 /// As [`run_query`].
 pub(in crate::ffi) unsafe fn fill(
-    query: QueryArgs,
+    args: QueryArgs,
     kind: QueryKind,
+    solver: Solver,
     warm: *mut ccd_warm_t,
     want: c_uint,
     out: *mut ccd_penetration_t,
-    solve: impl FnOnce(
-        &Pair<Object, Object>,
-        &mut WarmStart,
-        &Settings,
-        bool,
-        &mut Penetration,
-    ) -> Result<(), Stop>,
 ) -> c_int {
     if out.is_null() || want & !CCD_WANT_ALL != 0 {
         return CCD_BAD_INPUT;
     }
-    let wants_pos = want & CCD_WANT_POS != 0;
-    // SAFETY: the caller's guarantees are those of the callee; [outputs].
-    unsafe {
-        run_query(
-            query,
-            kind,
-            warm,
-            want & (CCD_WANT_POS | CCD_WANT_POINTS) != 0,
-            |pair, state, settings, hit| solve(pair, state, settings, wants_pos, hit),
-            |hit, supports| *out = ccd_penetration_t::new(hit, want, supports),
-        )
+    let wanted = Wanted {
+        state: !warm.is_null(),
+        points: want != 0,
+        pos: want & CCD_WANT_POS != 0,
+    };
+    // SAFETY: the caller's guarantees are those of the callee.
+    match unsafe { run_query(args, kind, solver, warm, wanted) } {
+        Ok(hit) => {
+            // SAFETY: [outputs].
+            unsafe { *out = ccd_penetration_t::new(&hit, want) };
+            match hit.status {
+                Status::Converged => CCD_HIT,
+                _ => CCD_LIMIT,
+            }
+        }
+        Err(stop) => code_of(&stop),
     }
 }
 
@@ -188,7 +143,7 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (query, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(query, kind, warm, want, out, Pair::penetration) }
+    unsafe { fill(args, kind, Solver::Global, warm, want, out) }
 }

@@ -5,16 +5,13 @@
 
 use core::ffi::{c_int, c_uint, c_void};
 
-use super::super::arena;
 use super::super::callbacks::{QueryArgs, QueryKind};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::penetration::{ccd_penetration_t, fill};
 use super::state::ccd_warm_t;
 use super::unit_of;
-use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
-use crate::types::Settings;
+use crate::solver::Solver;
 
 /// Computes a local minimum of the penetration depth by a local search from the state's direction.
 /// Faster than ccdPenetration if that direction is roughly right; from a distant one it may find
@@ -34,9 +31,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = QueryArgs { obj1, obj2, ccd };
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(query, QueryKind::Penetration, warm, want, out, Pair::local) }
+    unsafe { fill(args, kind, Solver::Local, warm, want, out) }
 }
 
 /// Computes the globally least penetration depth with a certificate: depth - depth_lower <=
@@ -57,13 +54,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let query = QueryArgs { obj1, obj2, ccd };
-    let solve =
-        |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, wants, hit: &mut _| {
-            arena::with_buffers(|arena| pair.proven(state, settings, arena, wants, hit))
-        };
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Proven);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(query, QueryKind::Proven, warm, want, out, solve) }
+    unsafe { fill(args, kind, Solver::Proven, warm, want, out) }
 }
 
 /// Computes the directional penetration depth: the least distance by which obj2 must move along
@@ -85,17 +78,13 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callee.
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let Some(dir) = unit_of(dir) else {
-            return CCD_BAD_INPUT;
-        };
-        let query = QueryArgs { obj1, obj2, ccd };
-        let solve =
-            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
-                pair.along(dir, state, settings, hit)
-            };
-        fill(query, QueryKind::Penetration, warm, want, out, solve)
+        match unit_of(dir) {
+            Some(dir) => fill(args, kind, Solver::Along(dir), warm, want, out),
+            None => CCD_BAD_INPUT,
+        }
     }
 }
 
@@ -118,16 +107,12 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callee.
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let Some(plane_normal) = unit_of(plane_normal) else {
-            return CCD_BAD_INPUT;
-        };
-        let query = QueryArgs { obj1, obj2, ccd };
-        let solve =
-            |pair: &Pair<_, _>, state: &mut WarmStart, settings: &Settings, _, hit: &mut _| {
-                pair.incremental(Some(plane_normal), state, settings, false, hit)
-            };
-        fill(query, QueryKind::Penetration, warm, want, out, solve)
+        match unit_of(plane_normal) {
+            Some(normal) => fill(args, kind, Solver::Planar(normal), warm, want, out),
+            None => CCD_BAD_INPUT,
+        }
     }
 }

@@ -3,11 +3,9 @@
 
 //! States: carried from one query of a pair to the next.
 
-use core::ffi::{c_int, c_uint};
+use core::ffi::c_uint;
 
 use super::super::types::ccd_vec3_t;
-use super::codes::{CCD_BAD_INPUT, CCD_NO_MEMORY};
-use crate::minkowski::support::Fault;
 use crate::minkowski::warm_start::WarmStart;
 
 /// Number of reals in a ccd_warm_t.
@@ -40,7 +38,7 @@ const _: () = {
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
+pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
     // SAFETY: [inputs].
     match unsafe { warm.as_ref() } {
         Some(warm) => WarmStart::unpack(warm.reals, warm.words),
@@ -48,36 +46,11 @@ unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
     }
 }
 
-/// Runs `solve` with the caller's state, or a cold one where `warm` is NULL, and returns its code. A
-/// fault leaves the caller's state unchanged.
-///
-/// # Safety
-/// \[inputs\] and \[outputs\] of the module contract; `solve` runs callbacks, so that nothing
-/// with a destructor is alive here.
-#[inline(always)]
-pub(in crate::ffi) unsafe fn with_state(
-    warm: *mut ccd_warm_t,
-    solve: impl FnOnce(&mut WarmStart) -> Result<c_int, Fault>,
-) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callee.
-    unsafe {
-        let mut state = read(warm);
-        match solve(&mut state) {
-            Ok(code) => {
-                store(warm, &state);
-                code
-            }
-            Err(Fault::NoMemory) => CCD_NO_MEMORY,
-            Err(Fault::NonFinite) => CCD_BAD_INPUT,
-        }
-    }
-}
-
 /// Writes the caller's state unless `warm` is NULL.
 ///
 /// # Safety
 /// \[outputs\] of the module contract.
-unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
+pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
     if !warm.is_null() {
         let (reals, words) = state.pack();
         // SAFETY: [outputs].

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The penetration queries by name: what C and Rust callers choose between.
+
+use crate::epa::penetration::Arena;
+use crate::math::Vec3;
+use crate::minkowski::support::SupportMap;
+use crate::minkowski::support_query::Stop;
+use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
+use crate::types::Penetration;
+
+/// A penetration query.
+#[derive(Clone, Copy, Debug)]
+pub enum Solver {
+    /// [`Pair::penetration`]: the global minimum within 0.1 %.
+    Global,
+    /// [`Pair::proven`]: the global minimum within the tolerance, without the centers.
+    Proven,
+    /// [`Pair::local`]: a local minimum.
+    Local,
+    /// [`Pair::along`]: the depth along this unit direction.
+    Along(Vec3),
+    /// [`Pair::incremental`] in the plane with this unit normal.
+    Planar(Vec3),
+    /// [`Pair::incremental`]: the published method.
+    Incremental,
+}
+
+impl Solver {
+    /// Runs the query from the state of the last one. [`Pair::complete`] is to follow. `arena`: used by
+    /// [`Solver::Proven`] alone.
+    ///
+    /// # Errors
+    /// [`Stop::Separated`]; [`Stop::Fault`]: the state is then not for use.
+    #[inline(always)]
+    pub fn run<A: SupportMap, B: SupportMap>(
+        self,
+        pair: &Pair<A, B>,
+        state: &mut WarmStart,
+        arena: &mut dyn Arena,
+    ) -> Result<Penetration, Stop> {
+        pair.separate(state)?;
+        match self {
+            Solver::Global => pair.penetration(state),
+            Solver::Proven => pair.proven(state, arena),
+            Solver::Local => pair.local(state),
+            Solver::Along(dir) => pair.along(&dir, state),
+            Solver::Planar(normal) => pair.incremental(Some(normal), state),
+            Solver::Incremental => pair.incremental(None, state),
+        }
+    }
+}
