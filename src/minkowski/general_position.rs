@@ -63,9 +63,8 @@ pub fn tilted(n: &Vec3, tilt: f64) -> Vec3 {
     if tilt == 0.0 {
         return *n;
     }
-    // The tilt lengthens n by less than 1e-16. One step of Newton's method for 1 / |n| removes the rounding of n itself.
-    let scale = 1.5 - 0.5 * n.norm_squared();
-    (n + (POLE * tilt).cross(n)) * scale
+    // The tilt lengthens n by less than 1e-16.
+    n + (POLE * tilt).cross(n)
 }
 
 /// Returns the unit direction `n` of a caller's guess in general position, unit: the pair's size is not known yet.
