@@ -1,18 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The queries of a pair, and the steps that the penetration queries share. (The intersection test is in
-//! [`crate::gjk::intersect`], the signed distance in [`mod@signed_distance`].)
+//! The queries of a pair.
 //!
-//! 1. *Separating axis*: evaluate the separating axis of the last query. If it still separates, the query
-//!    ends after one support point.
-//! 2. *Solver*: run it from the warm start state, else from the difference of the centers, else from the
-//!    caller's first direction.
-//! 3. *Overlap*: a local minimum of the support function can be positive though the objects are separated,
-//!    e.g. for a thin plate with the object on its far side. Therefore the solvers of local minima prove the overlap
-//!    separately ([`contains_origin`]); the certificate of the global minimum implies it.
+//! 1. *Separate*: evaluate the separating axis of the last query. If it still separates, the query ends after one
+//!    support point.
+//! 2. *Minimize* or *descend*: find the global or a local minimum of the depth, from the state of the last query, else
+//!    along the line of the centers, else along the caller's first direction.
+//! 3. *Prove the overlap*: a local minimum of the support function can be positive though the objects are separated,
+//!    e.g. for a thin plate with the object on its far side. The certificate of the global minimum implies the overlap;
+//!    the local search tests its last face; queries without either use [`Pair::prove_overlap`].
 //! 4. *Contact position*: compute the [`contact_position`], or take the middle of the witness points.
-//! 5. *Warm start state*: store it in the [`WarmStart`], if the caller keeps one.
+//! 5. *Complete* the state for the next query, if the caller keeps one.
 //!
 //! `include/README.md` has the outputs of each query. All assume valid support functions ([`crate::types`]).
 

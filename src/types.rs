@@ -15,12 +15,8 @@ pub struct Settings {
     /// Largest error of the depth, metres; not negative and not NaN, but possibly infinite. Solvers clamp it
     /// (`Scale::tolerance`).
     pub tolerance: f64,
-    /// Limit on the iterations of a query, all stages together; at most `ITERATION_CAP`.
-    /// An iteration is a support point after the first tetrahedron or portal: one that expands a polytope, or that
-    /// refines or confirms a face in the local search. In `along`, `planar` and `incremental` it is a step of portal
-    /// discovery or refinement, or a change of the ray; in a distance any support point, and the depth of objects
-    /// that overlap is counted anew. Support points that decide whether the objects overlap are not limited, except
-    /// in a distance.
+    /// Limits the iterations that refine an answer; at most `ITERATION_CAP`. Support points that decide whether the
+    /// objects overlap are not limited, except in a distance. `include/README.md` says what each query counts.
     pub max_iterations: u64,
 }
 
