@@ -6,7 +6,7 @@
 //!
 //! `cargo run -p lab --bin engines` the single queries of the test, in more poses (a minute)
 //! `cargo run -p lab --bin engines -- world` ODE worlds collided by this library alone (3 minutes)
-//! `cargo run -p lab --bin engines -- scene` a scene through FCL's broad phase (half a minute)
+//! `cargo run --release -p lab --bin engines -- fcl` what FCL's collide costs, by use (2 minutes)
 //! `cargo run -p lab --bin engines -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
 //! `cargo run -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --release -p lab --bin engines -- steps` a step of whole programs on both libraries (2 minutes)
@@ -78,9 +78,12 @@ fn world() {
     println!("{}", tables::simulation_table(&rows));
 }
 
-fn scene() {
-    println!("{}", tables::scene_table(&tables::scenes(300, 100, 7)));
-    println!("{}", tables::header_table(&tables::header_costs(7)));
+/// Prints what FCL costs by use, and writes it into the page of the engines.
+fn fcl() {
+    let costs = tables::fcl_costs(9, 1);
+    let table = format!("\n{}\n{}.\n", tables::fcl_table(&costs), harness::machine());
+    println!("{table}");
+    write_between_marks("c-tests/engines/README.md", "fcl", &table);
 }
 
 fn main() {
@@ -89,12 +92,12 @@ fn main() {
         None => single_queries(),
         Some("long") => long(),
         Some("distance") => println!("{}", tables::distance_table(&consumers::fcl_distance().map(|m| m.run("10000")))),
-        Some("scene") => scene(),
+        Some("fcl") => fcl(),
         Some("screens") => screens(),
         Some("steps") => steps(),
         Some("world") => world(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, `distance`, `scene`, `screens`, `steps`, `world` or `long`");
+            eprintln!("unknown: {other}; nothing, `distance`, `fcl`, `screens`, `steps`, `world` or `long`");
             std::process::exit(2);
         }
     }

@@ -7,9 +7,8 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use super::consumers::{self, CONSUMERS};
-use super::programs::{Method, Output, on_both, program};
+use super::programs::{Method, Output, on_both, program, run_all};
 use super::results::{Simulation, median, range, simulate, values, wrong_of};
-use crate::harness::callgrind;
 
 /// A column of a table: heading and cell.
 pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
@@ -62,19 +61,73 @@ pub fn distance_table(outputs: &[Output]) -> String {
     )
 }
 
-// --- FCL's broad phase ----------------------------------------------------------
+// --- FCL by use -----------------------------------------------------------------
 
-/// Runs `fcl_scene` by each of its narrow phases; one pair in `exact` is judged by exact truth too. The
-/// time is the least of so many runs in which they take turns.
-pub fn scenes(frames: usize, exact: usize, rounds: usize) -> [Output; 4] {
-    let arguments = format!("{frames} 200 {exact}");
-    let mut scenes = consumers::fcl_scene(false).map(|method| method.run(&arguments));
-    let least = least_of(rounds, &consumers::fcl_scene(true), &arguments, "timed.seconds");
-    for (scene, seconds) in scenes.iter_mut().zip(least) {
-        scene.set("milliseconds", 1e3 * seconds / frames as f64);
-    }
-    scenes
+/// How FCL is used: its name in `fcl_scene`, what a reader calls it, frames and number of pairs or bodies.
+pub const FCL_USES: [(&str, &str, usize, usize); 5] = [
+    ("yes-no", "yes or no, random poses", 200, 120),
+    ("touching", "contacts of touching bodies", 100, 120),
+    ("through", "contacts of bodies that drift through each other", 150, 100),
+    ("random", "contacts in random poses", 100, 120),
+    ("mesh", "contacts of a mesh of 128 triangles", 10, 60),
+];
+
+/// FCL's narrow phases in one use and with one kind of bodies.
+pub struct FclCost {
+    pub row: String,
+    /// By their answers.
+    pub judged: [Output; 4],
+    /// Time over that on libccd: median of the rounds.
+    ratios: [f64; 4],
 }
+
+/// Judges each use of FCL with primitives and with hulls, and times it in so many rounds, in which the narrow phases
+/// take turns. The frames are divided by `part`.
+pub fn fcl_costs(rounds: usize, part: usize) -> Vec<FclCost> {
+    let [judged, timed] = [false, true].map(consumers::fcl_scene);
+    let rows = FCL_USES.iter().flat_map(|row| ["primitives", "hulls"].map(|bodies| (row, bodies)));
+    let cost = |((name, title, frames, count), bodies): (&(&str, &str, usize, usize), &str)| {
+        let judged = run_all(&judged, &format!("{name} {bodies} {} {count} 100", (frames / 10).div_ceil(part)));
+        let arguments = format!("{name} {bodies} {frames} {count} 1");
+        let mut seconds = [const { Vec::new() }; 4];
+        for _ in 0..rounds {
+            for (method, seconds) in timed.iter().zip(&mut seconds) {
+                seconds.push(method.run(&arguments).value("timed.seconds"));
+            }
+        }
+        let ratios = seconds.each_ref().map(|ours| {
+            let mut ratios: Vec<_> = ours.iter().zip(&seconds[0]).map(|(ours, theirs)| ours / theirs).collect();
+            ratios.sort_by(f64::total_cmp);
+            ratios.get(rounds / 2).copied().unwrap_or(f64::NAN)
+        });
+        FclCost { row: format!("{title} | {bodies}"), judged, ratios }
+    };
+    rows.map(cost).collect()
+}
+
+/// Returns the share of wrong answers, in percent of the hits and misses of overlapping pairs.
+fn wrong_percent(output: &Output) -> f64 {
+    let missed = output.value("put.missed");
+    100.0 * (wrong_of(output, "put") + missed) / (output.value("put.hits") + missed)
+}
+
+pub fn fcl_table(costs: &[FclCost]) -> String {
+    let ratio = |method: usize| move |cost: &FclCost| format!("{:.2}", cost.ratios[method]);
+    markdown(
+        costs,
+        &[
+            ("use | bodies", &|cost| cost.row.clone()),
+            ("libccd wrong", &|cost| format!("{:.1} %", wrong_percent(&cost.judged[0]))),
+            ("here wrong", &|cost| format!("{:.1} %", wrong_percent(&cost.judged[1]))),
+            ("swap: time", &ratio(1)),
+            ("`ccd/fcl.hpp`, one contact", &ratio(2)),
+            ("up to 8", &ratio(3)),
+        ],
+    )
+    .replacen("|---|", "|---|---|", 1)
+}
+
+// --- whole programs -------------------------------------------------------------
 
 /// Returns the least value of a counter over so many rounds in which the methods take turns.
 fn least_of<const N: usize>(rounds: usize, methods: &[Method; N], arguments: &str, key: &str) -> [f64; N] {
@@ -86,73 +139,6 @@ fn least_of<const N: usize>(rounds: usize, methods: &[Method; N], arguments: &st
     }
     least
 }
-
-pub fn scene_table(scenes: &[Output]) -> String {
-    let first = scenes[0].value("milliseconds");
-    let count = |key: &'static str| move |s: &Output| s.value(key).to_string();
-    markdown(
-        scenes,
-        &[
-            ("narrow phase", &|s| s.method.to_owned()),
-            ("time a frame, ms", &|s| format!("{:.3}", s.value("milliseconds"))),
-            ("ratio", &|s| format!("{:.2}", s.value("milliseconds") / first)),
-            ("supports a pair", &|s| format!("{:.2}", s.supports_per_query())),
-            ("hits", &count("judged.hits")),
-            ("contacts", &count("judged.contacts")),
-            ("wrong", &|s| s.sum("put.missed put.spurious put.off").to_string()),
-            ("largest error, mm", &|s| format!("{:.3}", 1e3 * s.value("put.error"))),
-            ("of FCL's closed forms", &|s| format!("{:.3}", 1e3 * s.value("closed_form.error"))),
-        ],
-    )
-}
-
-/// Cost of `<ccd/fcl.hpp>` itself in a scene of 200 bodies, with one contact a pair.
-pub struct HeaderCost {
-    scene: &'static str,
-    /// Over `fcl::collide` on libccd.
-    time_ratio: f64,
-    /// Instructions of a pair.
-    instructions: f64,
-    /// The share of instructions outside the library's functions, and so outside solver and callbacks.
-    pub share: f64,
-}
-
-/// Measures the header; the times are the least of so many runs.
-pub fn header_costs(rounds: usize) -> [HeaderCost; 3] {
-    let [libccd, _, header, _] = consumers::fcl_scene(true);
-    let methods = [libccd, header];
-    ["mixed", "round", "hulls"].map(|scene| {
-        let [libccd, header] = least_of(rounds, &methods, &format!("100 200 1 {scene}"), "timed.seconds");
-        let command = methods[1].command(&format!("60 200 1 {scene}"));
-        // Each toggle switches counting at entry and at exit.
-        let count = |functions: &[&str]| {
-            let toggles: Vec<_> = functions.iter().map(|name| format!("--toggle-collect={name}")).collect();
-            let toggles: Vec<_> = toggles.iter().map(String::as_str).collect();
-            let (written, dumps) = callgrind(&command, &toggles).unwrap_or_else(|error| panic!("{error}"));
-            let totals = dumps.iter().flat_map(|dump| dump.lines()).filter_map(|line| line.strip_prefix("totals: "));
-            (written.stdout, totals.map(|n| n.parse::<f64>().expect("a count")).sum::<f64>())
-        };
-        let callback = "*ccd_fcl::CollisionFunction*";
-        let (text, all) = count(&[callback]);
-        let (_, outside) = count(&[callback, "ccdPenetration", "ccdIntersect", "ccdContacts", "ccdSignedDistance"]);
-        let pairs = crate::harness::fields(&text, "timed")["pairs"];
-        HeaderCost { scene, time_ratio: header / libccd, instructions: all / pairs, share: outside / all }
-    })
-}
-
-pub fn header_table(costs: &[HeaderCost]) -> String {
-    markdown(
-        costs,
-        &[
-            ("scene", &|c| c.scene.to_owned()),
-            ("time ratio", &|c| format!("{:.2}", c.time_ratio)),
-            ("instructions a pair", &|c| format!("{:.0}", c.instructions)),
-            ("of them the header", &|c| format!("{:.1} %", 100.0 * c.share)),
-        ],
-    )
-}
-
-// --- whole programs -------------------------------------------------------------
 
 /// Returns milliseconds of processor that a step of each consumer's program takes on either library: the
 /// least of so many rounds in which the libraries take turns.
