@@ -7,7 +7,7 @@
 // Each driver uses a part.
 #![allow(dead_code)]
 
-use crate::harness::{self, Executable, Program, root, run_command};
+use crate::harness::{self, Executable, Precision, Program, must_succeed, output_dir, root, run_command};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -174,6 +174,23 @@ pub fn compared(program: Program, every: &str) -> [Method; 2] {
     let options = ["--no-times", "--every", every, "--swap"];
     let [theirs, ours] = [&options[..3], &options].map(|options| program.compared(options));
     [Method::libccd("libccd", theirs), Method::ours("this library", ours)]
+}
+
+/// Returns FCL's signed distance on libccd, on this library, and on this library with
+/// `libwarmccd-fcl.so` preloaded.
+pub fn fcl_distance() -> [Method; 3] {
+    // The rows of configurations.h name the fields that they set.
+    let [theirs, ours] = on_both(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"));
+    let library = output_dir().join("libwarmccd-fcl.so");
+    let mut compile = harness::compile_with(&harness::compiler(true));
+    compile.args(["-std=c++11", "-fPIC", "-shared", "-Wextra", "-Werror"]);
+    compile.args(["-fvisibility=hidden", "-isystem/usr/include/eigen3"]);
+    compile.arg("-I").arg(root().join("include"));
+    compile.arg(root().join("cmake/fcl/signed_distance.cpp")).arg("-o").arg(&library);
+    compile.arg("-L").arg(&harness::library(Precision::Double).dir).arg("-lccd");
+    must_succeed(&mut compile, "the compiler (for libwarmccd-fcl.so)");
+    let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
+    [theirs, ours, preloaded.preload(library)]
 }
 
 /// Returns the same with every query judged on this library, and none on libccd.

@@ -10,7 +10,8 @@ mod programs;
 #[path = "results.rs"]
 mod results;
 
-use programs::{compared, ours_judged, program, run_all};
+use crate::harness::{Precision, library};
+use programs::{Method, compared, fcl_distance, ours_judged, program, run_all};
 use results::swapped;
 
 /// To 7 mm, as `pos` itself (`tests/extension/pressure.c`); a point contact is where libccd has it.
@@ -23,6 +24,31 @@ fn fcl_collide_and_positions() {
     for body in ["box", "standing-cylinder", "lying-cylinder", "lying-capsule", "standing-cone", "ellipsoid"] {
         let [theirs, ours] = outputs.each_ref().map(|output| output.value(&format!("position.{body}")));
         assert!(ours <= 0.007 && (ours <= 0.1 * theirs || ours <= 1e-4), "{body}: {ours} m, libccd's {theirs}");
+    }
+}
+
+/// A library loaded before a program takes the place of its libccd under any name, as of that in python-fcl's wheel
+/// (`lab/engines/simulations.rs`).
+#[test]
+fn preloading_replaces_libccd() {
+    let on_libccd = program("fcl_static.cpp").flag("-rdynamic").link_system().build().quiet();
+    let built = library(Precision::Double).dir.join("libccd.so");
+    let output = Method::ours("preloaded", on_libccd).preload(built).run("1 2");
+    assert!(output.value("position.box") <= 0.007, "{}", output.text);
+}
+
+/// With `libwarmccd-fcl.so` FCL answers every configuration, touching boxes and random pairs right, and throws nothing.
+/// On libccd and in more pairs: `lab/engines/simulations.rs`.
+#[test]
+fn fcl_signed_distance() {
+    let [_, _, preloaded] = fcl_distance();
+    let output = preloaded.run("100");
+    assert!(output.text.contains("\nfunction libwarmccd-fcl.so\n"), "{}", output.text);
+    for set in ["configurations", "kissing", "random"] {
+        assert!(output.value(&format!("{set}.queries")) >= 90.0, "{}", output.text);
+        for key in ["threw", "endless", "wrong", "outside"] {
+            assert_eq!(output.value(&format!("{set}.{key}")), 0.0, "{}", output.text);
+        }
     }
 }
 

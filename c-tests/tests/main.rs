@@ -32,6 +32,10 @@ mod stability;
 #[path = "../engines/swap.rs"]
 mod swap;
 
+#[cfg(not(feature = "single"))]
+#[path = "../tools/compare/compare.rs"]
+mod compare;
+
 // What they cost.
 #[cfg(not(feature = "single"))]
 #[path = "../bench/measuring/support_counts.rs"]

@@ -5,7 +5,7 @@
 //! library's own interface.
 
 use super::programs::{Method, on_both, program};
-use crate::harness::{self, Executable, Precision, must_succeed, output_dir, root};
+use crate::harness::{self, Executable, Precision, output_dir, root};
 use std::process::Command;
 
 /// The programs whose simulation steps are timed and whose queries compare.sh's screen shows: title, file,
@@ -26,23 +26,6 @@ pub fn screen(file: &str, arguments: &str) -> String {
     let screen = written.stderr.replace(&*path, &format!("./{name} {arguments}"));
     // The program's own output on stderr comes before.
     screen[screen.find("== ").unwrap_or(0)..].trim().to_owned()
-}
-
-/// Returns FCL's signed distance on libccd, on this library, and on this library with
-/// `libwarmccd-fcl.so` preloaded.
-pub fn fcl_distance() -> [Method; 3] {
-    // The rows of configurations.h name the fields that they set.
-    let [theirs, ours] = on_both(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"));
-    let library = output_dir().join("libwarmccd-fcl.so");
-    let mut compile = harness::compile_with(&harness::compiler(true));
-    compile.args(["-std=c++11", "-fPIC", "-shared", "-Wextra", "-Werror"]);
-    compile.args(["-fvisibility=hidden", "-isystem/usr/include/eigen3"]);
-    compile.arg("-I").arg(root().join("include"));
-    compile.arg(root().join("cmake/fcl/signed_distance.cpp")).arg("-o").arg(&library);
-    compile.arg("-L").arg(&harness::library(Precision::Double).dir).arg("-lccd");
-    must_succeed(&mut compile, "the compiler (for libwarmccd-fcl.so)");
-    let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
-    [theirs, ours, preloaded.preload(library)]
 }
 
 /// Returns the four narrow phases of `fcl_scene`, judged by their answers; or timed, without the judge.

@@ -18,7 +18,7 @@ mod engines;
 mod harness;
 
 use engines::consumers::{self, CONSUMERS};
-use engines::programs::{compared, program, run_all};
+use engines::programs::{compared, fcl_distance, program, run_all};
 use engines::results::{self, Simulation, swapped};
 use engines::tables;
 use harness::write_between_marks;
@@ -91,7 +91,7 @@ fn main() {
     match std::env::args().nth(1).as_deref() {
         None => single_queries(),
         Some("long") => long(),
-        Some("distance") => println!("{}", tables::distance_table(&consumers::fcl_distance().map(|m| m.run("10000")))),
+        Some("distance") => println!("{}", tables::distance_table(&fcl_distance().map(|m| m.run("10000")))),
         Some("fcl") => fcl(),
         Some("screens") => screens(),
         Some("steps") => steps(),

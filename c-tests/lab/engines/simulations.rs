@@ -4,7 +4,7 @@
 //! Programs linked to Debian's FCL, ODE, MuJoCo and DART run on this library as they run on libccd, in scenes that take
 //! minutes; the tables of `cargo run --release -p lab --bin engines` are made by the same judges.
 
-use crate::engines::programs::{ours_judged, program, run_all};
+use crate::engines::programs::{fcl_distance, ours_judged, program, run_all};
 use crate::engines::results::swapped;
 use crate::engines::{consumers, tables};
 use crate::harness::callgrind;
@@ -13,7 +13,7 @@ use crate::harness::callgrind;
 /// configuration, touching boxes and random pairs right, and throws nothing.
 #[test]
 fn fcl_signed_distance() {
-    let outputs = run_all(&consumers::fcl_distance(), "1000");
+    let outputs = run_all(&fcl_distance(), "1000");
     let function = outputs.each_ref().map(|o| o.text.lines().find_map(|line| line.strip_prefix("function ")));
     let [Some(on_libccd), Some(on_ours), Some("libwarmccd-fcl.so")] = function else { panic!("{function:?}") };
     assert!([on_libccd, on_ours].iter().all(|file| file.starts_with("libfcl.so")), "{function:?}");
