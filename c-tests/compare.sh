@@ -9,7 +9,8 @@
 #     --swap       give the program this library's answers, not libccd's
 #     --keep DIR   write the worst wrong answers there, as C files for replay.sh
 #     --no-times   measure no times: fewer calls of the callbacks
-#     --libccd F   the libccd to compare with (default: the one that the program loads)
+#     --libccd F   the libccd to compare with (default: the one that the program loads, or if that is this
+#                  library, the system's other one)
 #     --library F  a built libccd.so of this library (default: built now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART. Its exit code is
 # this command's; 125: the program could not be run. Runs setup.sh itself.
@@ -110,15 +111,13 @@ build() {
 
 # --- the two libraries -----------------------------------------------------------------
 
-# Reads the libccd.so.2 of a program from the dynamic linker's list.
-libccd_of() {
-    sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p' | head -n 1
-}
-
+# shellcheck source=c-tests/tools/libccd.sh
+. "$here/tools/libccd.sh"
 if [ -z "$libccd" ]; then
-    [ $linked != yes ] || libccd=$(printf '%s\n' "$libraries" | libccd_of)
+    [ $linked != yes ] || libccd=$(printf '%s\n' "$libraries" | loaded_libccd)
     # The one that the program finds if it loads it later.
-    [ -n "$libccd" ] || libccd=$(LD_PRELOAD=libccd.so.2 LD_TRACE_LOADED_OBJECTS=1 "$(command -v cat)" 2>/dev/null | libccd_of)
+    [ -n "$libccd" ] || libccd=$(LD_PRELOAD=libccd.so.2 LD_TRACE_LOADED_OBJECTS=1 "$(command -v cat)" 2>/dev/null | loaded_libccd)
+    libccd=$(other_libccd "$libccd")
 fi
 [ -n "$libccd" ] && [ -r "$libccd" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
 ! grep -q ccdImplementation "$libccd" || fail "$libccd is this library, installed: name a libccd with --libccd FILE"

@@ -23,14 +23,12 @@ mkdir -p "$work"
 # LD_LIBRARY_PATH needs the file under the name that programs ask for.
 ln -sf "$release/libccd.so" "$work/libccd.so.2"
 
-# libccd_of PROGRAM: prints the libccd.so.2 that the dynamic linker gives the program
-libccd_of() {
-    ldd "$1" | sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p'
-}
+# shellcheck source=c-tests/tools/libccd.sh
+. c-tests/tools/libccd.sh
 
-# turn PROGRAM TABLE [LIBRARY]: appends a run to the table's file
+# turn PROGRAM TABLE FOLDER: appends a run on the libccd.so.2 in a folder to the table's file
 turn() {
-    LD_LIBRARY_PATH=${3:-} "$work/$1" "$recording" "$passes" >>"$work/$2"
+    LD_LIBRARY_PATH=$3 "$work/$1" "$recording" "$passes" >>"$work/$2"
 }
 
 # Reads tables: figures by file and method, with the best times of all turns; line holds the last table with these times.
@@ -72,20 +70,20 @@ for program in replay replay_extension; do
     flag=-DOURS_ALONE
     [ $program = replay_extension ] || flag=-UOURS_ALONE
     cc -std=c99 -O2 -Iinclude -Ic-tests $flag c-tests/tools/record/replay.c -o "$work/$program" "$work/libccd.so.2" -lm
-    if [ "$(LD_LIBRARY_PATH=$work libccd_of "$work/$program")" != "$work/libccd.so.2" ]; then
+    if [ "$(LD_LIBRARY_PATH=$work ldd "$work/$program" | loaded_libccd)" != "$work/libccd.so.2" ]; then
         echo "main.sh: $program does not run on this library" >&2
         exit 1
     fi
 done
-system=$(libccd_of "$work/replay")
-if [ -n "$system" ] && grep -q ccdImplementation "$system"; then
-    printf '\n== %s is this library, installed: no libccd to compare with\n' "$system"
-    system=
-elif [ -z "$system" ]; then
+system=$(other_libccd "$(ldd "$work/replay" | loaded_libccd)")
+if [ -n "$system" ]; then
+    mkdir -p "$work/theirs"
+    ln -sf "$system" "$work/theirs/libccd.so.2"
+else
     printf '\n== No libccd on this system: this library alone\n'
 fi
 for _ in $(seq "$turns"); do
-    [ -z "$system" ] || turn replay theirs.txt
+    [ -z "$system" ] || turn replay theirs.txt "$work/theirs"
     turn replay ours.txt "$work"
     turn replay_extension warm.txt "$work"
 done

@@ -44,14 +44,16 @@ ln -s "$library" "$work/libccd.so.2"
 cc -std=c99 -O2 -ffp-contract=off -I"$here/../include" "$1" -o "$work/case" "$work/libccd.so.2" -lm
 
 unset LD_LIBRARY_PATH
-libccd=$(ldd "$work/case" | sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p')
+# shellcheck source=c-tests/tools/libccd.sh
+. "$here/tools/libccd.sh"
+libccd=$(other_libccd "$(ldd "$work/case" | loaded_libccd)")
 if [ -z "$libccd" ]; then
     echo "== no libccd on this system"
-elif grep -q ccdImplementation "$libccd"; then
-    echo "== $libccd is this library, installed: no libccd to compare with"
 else
     echo "== libccd: $libccd"
-    "$work/case" || true
+    mkdir "$work/theirs"
+    ln -s "$libccd" "$work/theirs/libccd.so.2"
+    LD_LIBRARY_PATH=$work/theirs "$work/case" || true
 fi
 echo "== this library"
 LD_LIBRARY_PATH=$work "$work/case"

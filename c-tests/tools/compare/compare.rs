@@ -8,6 +8,7 @@ use crate::harness::{self, Executable, Program, fields, root};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 fn on_libccd(program: Program) -> Executable {
     program.link_system().without_tools().build().quiet()
@@ -226,6 +227,23 @@ fn recorded_contacts_are_counted_as_by_the_benchmark() {
     for key in ["memory", "no_shape", "threw", "contradicted"] {
         assert_eq!(counted[key], 0.0, "{key}");
     }
+}
+
+/// Where the program loads this library, as after an installation, the scripts compare it with the system's other libccd.
+#[test]
+fn the_other_libccd_is_found() {
+    let ours = harness::library(harness::Precision::Double);
+    let script = |name: &str, rest: &[&Path]| {
+        let mut command = Command::new("sh");
+        command.arg(root().join("c-tests").join(name)).arg("--library").arg(ours.dir.join("libccd.so")).args(rest);
+        command.env("LD_LIBRARY_PATH", &ours.dir);
+        let (_, written) = harness::run_command(&mut command, Duration::from_secs(300));
+        written.stdout + &written.stderr
+    };
+    let screen = script("compare.sh", &[&callbacks().path, Path::new("plain")]);
+    let named = screen.lines().find_map(|line| line.strip_prefix("   libccd: ")).expect("a library");
+    assert!(named.ends_with("/libccd.so.2") && !Path::new(named).starts_with(&ours.dir), "{screen}");
+    assert!(screen.contains("What the swap changes"), "{screen}");
 }
 
 /// A case compiles by itself, shows libccd's fault again, and is answered right by this library.

@@ -1,0 +1,23 @@
+# SPDX-FileCopyrightText: 2026 The warmccd developers
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Functions of the scripts that compare this library with the system's libccd.
+
+# loaded_libccd: reads what ldd prints, and prints the libccd.so.2 in it
+loaded_libccd() {
+    sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p' | head -n 1
+}
+
+# other_libccd FILE: prints FILE, or if that is this library, as after an installation to /usr/local, or empty, the first
+# libccd.so.2 in the dynamic linker's cache that is not; nothing if there is none
+other_libccd() {
+    {
+        echo "$1"
+        PATH=$PATH:/usr/sbin:/sbin ldconfig -p 2>/dev/null | sed -n 's|.*libccd\.so\.2 .*=> \(/.*\)|\1|p'
+    } | while read -r file; do
+        if [ -r "$file" ] && ! grep -q ccdImplementation "$file"; then
+            echo "$file"
+            break
+        fi
+    done
+}
