@@ -7,7 +7,7 @@
 // Each driver uses a part.
 #![allow(dead_code)]
 
-use crate::harness::{self, Executable, Precision, Program, must_succeed, output_dir, root, run_command};
+use crate::harness::{self, Executable, Program, cargo_dir, locked, must_succeed, output_dir, root, run_command};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -181,14 +181,21 @@ pub fn compared(program: Program, every: &str) -> [Method; 2] {
 pub fn fcl_distance() -> [Method; 3] {
     // The rows of configurations.h name the fields that they set.
     let [theirs, ours] = on_both(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"));
-    let library = output_dir().join("libwarmccd-fcl.so");
-    let mut compile = harness::compile_with(&harness::compiler(true));
-    compile.args(["-std=c++11", "-fPIC", "-shared", "-Wextra", "-Werror"]);
-    compile.args(["-fvisibility=hidden", "-isystem/usr/include/eigen3"]);
-    compile.arg("-I").arg(root().join("include"));
-    compile.arg(root().join("cmake/fcl/signed_distance.cpp")).arg("-o").arg(&library);
-    compile.arg("-L").arg(&harness::library(Precision::Double).dir).arg("-lccd");
-    must_succeed(&mut compile, "the compiler (for libwarmccd-fcl.so)");
+    // As cmake/README.md says; the flags are the tests' own.
+    let build = output_dir().join("fcl");
+    let mut cmake = Command::new("cmake");
+    cmake
+        .arg("-S")
+        .arg(root().join("cmake"))
+        .arg("-B")
+        .arg(&build)
+        .args(["-DCCD_FCL=ON", "-DCMAKE_CXX_FLAGS=-Wextra -Werror"]);
+    cmake.arg(format!("-DCCD_CARGO_TARGET_DIR={}", cargo_dir().display()));
+    let lock = locked(&output_dir().join("fcl.lock"));
+    must_succeed(&mut cmake, "cmake");
+    must_succeed(Command::new("cmake").arg("--build").arg(&build), "cmake --build");
+    drop(lock);
+    let library = build.join("lib/libwarmccd-fcl.so");
     let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
     [theirs, ours, preloaded.preload(library)]
 }

@@ -3,7 +3,9 @@
 
 /* Collides moving bodies with FCL's broad phase and this library, with a state for each pair.
  *
- *     g++ -O2 -I/usr/include/eigen3 fcl.cpp -lfcl -lccd -o fcl && ./fcl
+ * In the repository, after the swap of README.md (-lccd would find libccd-dev's, which libfcl-dev brings):
+ *
+ *     g++ -O2 -Iinclude -I/usr/include/eigen3 c-tests/examples/fcl.cpp target/swap/libccd.so.2 -Wl,-rpath,"$PWD/target/swap" -lfcl && ./a.out
  *
  * A box and a ball fall onto a table; each frame prints the contacts, and the distance of the two. */
 

@@ -200,7 +200,7 @@ fn build_library(precision: Precision) -> LibraryBuild {
 
 /// Opens a file and locks it against all other threads and processes.
 #[allow(clippy::incompatible_msrv, reason = "the tests' own crates need 1.89 too")]
-fn locked(path: &Path) -> File {
+pub fn locked(path: &Path) -> File {
     let file = File::options().create(true).append(true).open(path);
     file.and_then(|file| file.lock().map(|()| file)).unwrap_or_else(|e| panic!("cannot lock {}: {e}", path.display()))
 }

@@ -51,6 +51,7 @@ step packaging cargo test --no-fail-fast -p lab packaging::
 step packaging-single cargo test --no-fail-fast -p lab --features single packaging::
 # What test.sh leaves out in single precision: the extension, installing, the documentation's programs.
 step single cargo test --no-fail-fast --features single
+step commands sh c-tests/lab/commands.sh
 step rates campaign rates
 step wide campaign wide
 step states campaign states
@@ -63,6 +64,9 @@ step trixie packages tests trixie
 step arm64 packages cross arm64
 step i386 packages cross i386
 step platforms sh cmake/packages/platforms.sh
+step cargo-c sh cmake/packages/cargo-c.sh
+step newcomer-bookworm packages newcomer bookworm
+step newcomer-trixie packages newcomer trixie
 
 [ "$ran" -eq 1 ] || { echo "release.sh: no step is called so:$wanted" >&2; exit 2; }
 echo
