@@ -3,14 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Runs the commands of the pages that neither another test runs nor a root or a network needs, in a clone of the commit,
-# on a machine with libfcl-dev, and so with libccd-dev.
+# on a machine with libfcl-dev, and so with libccd-dev. (LD_PRELOAD allows no blank in the path.)
 
 set -eu
 repository=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-git clone -q "$repository" "$work/a clone"
-cd "$work/a clone"
+git clone -q "$repository" "$work/clone"
+cd "$work/clone"
 
 # block PAGE LANGUAGE PATTERN: prints the page's first code block in a language that contains the pattern
 block() {
