@@ -56,14 +56,13 @@ fn picture<'a>(
     cost: Axis,
 ) {
     let panel = |set: &&str| {
-        let rows = rows.clone().filter(|r| r.set == *set);
-        let limit = rows.clone().next().map(|r| r.truth_gap);
-        Panel::new(&super::kind(set), ERROR, cost, rows, limit)
+        let rows: Vec<&Row> = rows.clone().filter(|r| r.set == *set).collect();
+        let limit = rows.first().map(|r| r.truth_gap);
+        Panel { title: super::kind(set), x: ERROR, y: cost, rows, limit }
     };
-    let panels: Vec<Panel> = sets.iter().map(panel).collect();
     let columns = if sets.len() == 4 { 2 } else { 3 };
     let notes = ["left of the dashes the truth is not known".to_owned(), page.footer()];
-    figure::grid(&page.out.join(file), title, columns, &panels, &notes);
+    figure::grid(&page.out.join(file), title, columns, sets.iter().map(panel).collect(), &notes);
 }
 
 pub fn draw(page: &Page, rows: &[Row]) {

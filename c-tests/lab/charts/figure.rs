@@ -5,100 +5,88 @@
 
 use std::path::Path;
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::measuring::measure::Row;
 use crate::measuring::methods::{Entry, Mark, Start};
 
-type Cell<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Title of an axis, and the value of a row; none where it was not measured.
-#[derive(Clone, Copy)]
-pub struct Axis(&'static str, fn(&Row) -> Option<f64>);
+pub type Axis = (&'static str, fn(&Row) -> Option<f64>);
 
-pub const SUPPORTS: Axis = Axis("support points per query", |row| Some(row.supports));
-pub const TIME: Axis = Axis("time per query, s", |row| row.ns.map(|ns| ns * 1e-9));
-pub const VERTICES: Axis = Axis("vertices", |row| row.x);
+pub const SUPPORTS: Axis = ("support points per query", |row| Some(row.supports));
+pub const TIME: Axis = ("time per query, s", |row| row.ns.map(|ns| ns * 1e-9));
+pub const VERTICES: Axis = ("vertices", |row| row.x);
 /// The last digit of a metre is the finest error.
-pub const ERROR: Axis = Axis("mean |depth error|, m", |row| Some(row.mean_error.max(1e-16)));
+pub const ERROR: Axis = ("mean |depth error|, m", |row| Some(row.mean_error.max(1e-16)));
 
-struct Curve {
-    label: String,
-    style: ShapeStyle,
-    mark: Mark,
-    points: Vec<(f64, f64)>,
+/// A curve for each label of the rows, through its rows as they come; and a line across at an x.
+pub struct Panel<'a> {
+    pub title: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub rows: Vec<&'a Row>,
+    pub limit: Option<f64>,
 }
 
-impl Curve {
-    /// Returns the mark, around a point of a chart or of the page.
-    fn mark<'b>(&self) -> DynElement<'static, SVGBackend<'b>, (i32, i32)> {
-        match self.mark {
-            Mark::Dot => Circle::new((0, 0), 3, self.style.filled()).into_dyn(),
-            Mark::Ring => Circle::new((0, 0), 4, self.style).into_dyn(),
-            Mark::Triangle => TriangleMarker::new((0, 0), 5, self.style.filled()).into_dyn(),
-            Mark::Cross => Cross::new((0, 0), 4, self.style).into_dyn(),
-        }
+/// Returns the line of a row's curve.
+fn line(row: &Row) -> ShapeStyle {
+    let Entry { colour: (r, g, b), .. } = Entry::find(&row.method);
+    let share = if row.start == Start::Guess45 { 0.5 } else { 1.0 };
+    RGBColor(*r, *g, *b).mix(share).stroke_width(if row.ours { 3 } else { 1 })
+}
+
+/// Returns the mark of a row's curve, around a point of a chart or of the page.
+fn mark<'b>(row: &Row) -> DynElement<'static, SVGBackend<'b>, (i32, i32)> {
+    let style = line(row);
+    match Entry::find(&row.method).mark {
+        Mark::Dot => Circle::new((0, 0), 3, style.filled()).into_dyn(),
+        Mark::Ring => Circle::new((0, 0), 4, style).into_dyn(),
+        Mark::Triangle => TriangleMarker::new((0, 0), 5, style.filled()).into_dyn(),
+        Mark::Cross => Cross::new((0, 0), 4, style).into_dyn(),
     }
 }
 
-/// Curves of rows, one for each label, each through its points as they come; and a line across at an x.
-pub struct Panel {
-    title: String,
-    axes: [Axis; 2],
-    curves: Vec<Curve>,
-    limit: Option<f64>,
+/// Returns the first row of each label.
+fn legend<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<&'a Row> {
+    let mut seen = std::collections::BTreeSet::new();
+    rows.filter(|row| seen.insert(row.label())).collect()
 }
 
-impl Panel {
-    pub fn new<'a>(title: &str, x: Axis, y: Axis, rows: impl Iterator<Item = &'a Row>, limit: Option<f64>) -> Self {
-        let mut curves: Vec<Curve> = Vec::new();
-        for row in rows {
-            let Some(point) = x.1(row).zip(y.1(row)) else { continue };
-            match curves.iter_mut().find(|curve| curve.label == row.label()) {
-                Some(curve) => curve.points.push(point),
-                None => {
-                    let (entry, share) =
-                        (Entry::find(&row.method), if row.start == Start::Guess45 { 0.5 } else { 1.0 });
-                    let (r, g, b) = entry.colour;
-                    let style = RGBColor(r, g, b).mix(share).stroke_width(if entry.is_ours() { 3 } else { 1 });
-                    curves.push(Curve { label: row.label(), style, mark: entry.mark, points: vec![point] });
-                }
-            }
-        }
-        Self { title: title.to_owned(), axes: [x, y], curves, limit }
-    }
-
-    fn draw(&self, area: &Cell) -> Drawn {
-        let range = |values: &dyn Fn(&(f64, f64)) -> f64| {
-            let all = self.curves.iter().flat_map(|curve| curve.points.iter().map(values)).filter(|v| *v > 0.0);
+impl Panel<'_> {
+    fn draw(&self, area: &Area) -> Drawn {
+        let point = |row: &&Row| (self.x.1)(row).zip((self.y.1)(row));
+        let points: Vec<_> = self.rows.iter().filter_map(point).collect();
+        let range = |value: fn(&(f64, f64)) -> f64| {
+            let all = points.iter().map(value).filter(|v| *v > 0.0);
             let (low, high) = all.fold((f64::MAX, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
             low / 1.35..high * 1.35
         };
-        let (xs, ys) = (range(&|p| p.0), range(&|p| p.1));
+        let (xs, ys) = (range(|p| p.0), range(|p| p.1));
         let mut builder = ChartBuilder::on(area);
         builder.caption(&self.title, ("sans-serif", 16)).margin(6).margin_right(20);
         let builder = builder.x_label_area_size(38).y_label_area_size(60);
         let mut chart = builder.build_cartesian_2d(xs.clone().log_scale(), ys.clone().log_scale())?;
         let mut mesh = chart.configure_mesh();
-        mesh.light_line_style(TRANSPARENT).x_labels(5).y_labels(5).x_desc(self.axes[0].0).y_desc(self.axes[1].0);
-        mesh.x_label_formatter(&|v| label(*v)).y_label_formatter(&|v| label(*v)).draw()?;
+        mesh.light_line_style(TRANSPARENT).x_labels(5).y_labels(5).x_desc(self.x.0).y_desc(self.y.0);
+        let label = |v: &f64| if (0.99..1e5).contains(v) { format!("{v:.0}") } else { format!("{v:.0e}") };
+        mesh.x_label_formatter(&label).y_label_formatter(&label).draw()?;
         if let Some(limit) = self.limit.filter(|limit| xs.contains(limit)) {
             chart.draw_series(DashedLineSeries::new([(limit, ys.start), (limit, ys.end)], 4, 4, BLACK.into()))?;
         }
-        for curve in &self.curves {
-            chart.draw_series(LineSeries::new(curve.points.iter().copied(), curve.style))?;
-            chart.draw_series(curve.points.iter().map(|&point| EmptyElement::at(point) + curve.mark()))?;
+        for first in legend(self.rows.iter().copied().filter(|row| point(row).is_some())) {
+            let curve = self.rows.iter().filter(|row| row.label() == first.label()).filter_map(point);
+            chart.draw_series(LineSeries::new(curve.clone(), line(first)))?;
+            chart.draw_series(curve.map(|point| EmptyElement::at(point) + mark(first)))?;
         }
         Ok(())
     }
 }
 
-fn label(v: f64) -> String {
-    if (0.99..1e5).contains(&v) { format!("{v:.0}") } else { format!("{v:.0e}") }
-}
-
-fn write(path: &Path, title: &str, height: u32, notes: &[String], draw: impl FnOnce(&Cell) -> Drawn) {
+fn write(path: &Path, title: &str, height: u32, notes: &[String], draw: impl FnOnce(&Area) -> Drawn) {
     let foot = 20 * notes.len() as u32 + 10;
     let make = || -> Drawn {
         let root = SVGBackend::new(path, (900, 40 + height + foot)).into_drawing_area();
@@ -114,21 +102,19 @@ fn write(path: &Path, title: &str, height: u32, notes: &[String], draw: impl FnO
 }
 
 /// Draws panels in rows of `columns`, then the legend and the notes.
-pub fn grid(path: &Path, title: &str, columns: usize, panels: &[Panel], notes: &[String]) {
-    let panels: Vec<&Panel> = panels.iter().filter(|panel| !panel.curves.is_empty()).collect();
-    let mut legend: Vec<_> = panels.iter().flat_map(|panel| &panel.curves).collect();
-    let mut seen = std::collections::BTreeSet::new();
-    legend.retain(|curve| seen.insert(&curve.label));
+pub fn grid(path: &Path, title: &str, columns: usize, mut panels: Vec<Panel>, notes: &[String]) {
+    panels.retain(|panel| !panel.rows.is_empty());
+    let legend = legend(panels.iter().flat_map(|panel| panel.rows.iter().copied()));
     let rows = panels.len().div_ceil(columns);
     let top = rows as u32 * 290;
     write(path, title, top + 10 * legend.len() as u32 + 20, notes, |area| {
         let (head, below) = area.split_vertically(top);
         head.split_evenly((rows, columns)).iter().zip(&panels).try_for_each(|(cell, panel)| panel.draw(cell))?;
-        for (k, curve) in (0..).zip(legend) {
+        for (k, row) in (0..).zip(&legend) {
             let (x, y) = (16 + 440 * (k % 2), 8 + 20 * (k / 2));
-            below.draw(&PathElement::new([(x, y), (x + 28, y)], curve.style))?;
-            below.draw(&(EmptyElement::at((x + 14, y)) + curve.mark()))?;
-            below.draw(&Text::new(curve.label.clone(), (x + 36, y - 6), ("sans-serif", 14)))?;
+            below.draw(&PathElement::new([(x, y), (x + 28, y)], line(row)))?;
+            below.draw(&(EmptyElement::at((x + 14, y)) + mark(row)))?;
+            below.draw(&Text::new(row.label(), (x + 36, y - 6), ("sans-serif", 14)))?;
         }
         Ok(())
     });

@@ -49,7 +49,8 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
 
 pub fn draw(page: &Page, all: &[Row]) {
     let panel = |title: &str, is_shown: &dyn Fn(&Row) -> bool, cost: Axis| {
-        Panel::new(title, VERTICES, cost, all.iter().filter(|r| is_shown(r)), None)
+        let rows = all.iter().filter(|row| is_shown(row)).collect();
+        Panel { title: title.to_owned(), x: VERTICES, y: cost, rows, limit: None }
     };
     let capsule = |r: &Row| r.set.ends_with("_cap");
     let all_on = |r: &Row| capsule(r) && r.method != "Gao 2023, Algorithm 3";
@@ -62,5 +63,5 @@ pub fn draw(page: &Page, all: &[Row]) {
         panel("polytope – polytope, climbing: time", &|r| !capsule(r), TIME),
     ];
     let title = "The paper's figures over vertex counts";
-    figure::grid(&page.out.join("vertices.svg"), title, 2, &panels, &[page.footer()]);
+    figure::grid(&page.out.join("vertices.svg"), title, 2, panels.into(), &[page.footer()]);
 }
