@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Builds the release library and C or C++ programs that link it, runs them, and asserts which libccd
-//! they load.
+//! Builds the release library and C or C++ programs that link it, by make (`programs.mk`), runs them, and asserts which
+//! libccd they load.
 //!
 //! The programs of tests and of the lab include this file as their module `harness`.
 //!
@@ -28,8 +28,8 @@
 // Each driver uses a part of this module.
 #![allow(dead_code)]
 
+use std::collections::BTreeMap;
 use std::collections::hash_map::DefaultHasher;
-use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::hash::{Hash, Hasher};
@@ -37,7 +37,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::OnceLock;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// The scalar of a build of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -138,13 +138,13 @@ pub fn cargo_dir() -> PathBuf {
 }
 
 /// Returns the flags of rustc with which `cmake/CMakeLists.txt` builds the library.
-fn rust_flags() -> OsString {
+fn rust_flags() -> String {
     let variable = |name| std::env::var(name).ok().filter(|value| !value.is_empty());
     let home = variable("CARGO_HOME").or_else(|| Some(variable("HOME")? + "/.cargo")).unwrap_or_default();
     let own = [format!("--remap-path-prefix={home}=/cargo"), format!("--remap-path-prefix={}=.", root().display())];
     let given = variable("CARGO_ENCODED_RUSTFLAGS").map(|flags| vec![flags]);
     let given = given.unwrap_or_else(|| words("RUSTFLAGS"));
-    [given, own.to_vec()].concat().join("\u{1f}").into()
+    [given, own.to_vec()].concat().join("\u{1f}")
 }
 
 /// Returns the linker flags for a program with a static library of Rust's.
@@ -164,38 +164,47 @@ fn native_flags() -> Vec<String> {
 }
 
 fn build_library(precision: Precision) -> LibraryBuild {
-    let output = output_dir();
-    // Both precisions share their crates. Of parallel processes one builds, the others wait.
+    let text = |path: &Path| path.display().to_string();
     let target = cargo_dir();
-    let lock = locked(&output.join("library.lock"));
-
-    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root()).env("CARGO_ENCODED_RUSTFLAGS", rust_flags());
-    cargo.args(["rustc", "--release", "--lib", "--locked", "--crate-type", "staticlib,cdylib", "--target-dir"]);
-    cargo.arg(&target);
+    let mut cargo = vec![std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned())];
+    let mut add = |words: &str| cargo.extend(words.split(' ').map(String::from));
+    add("rustc --release --lib --locked --crate-type staticlib,cdylib");
     if precision == Precision::Single {
-        cargo.args(["--features", "single"]);
+        add("--features single");
     }
     let mut release = target.join("release");
     if emulated() {
-        cargo.args(["--target", TARGET]);
+        add(&format!("--target {TARGET}"));
         release = target.join(TARGET).join("release");
     }
-    must_succeed(&mut cargo, "Rust's cargo");
-
-    let dir = output.join(precision.name());
-    fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
-    for name in ["libccd.so", "libccd.a"] {
-        let built = fs::read(release.join(name)).unwrap_or_else(|e| panic!("no {name}: {e}"));
-        // A newer file would recompile all programs.
-        if fs::read(dir.join(name)).ok().as_ref() != Some(&built) {
-            replace(&dir.join(name), |new| fs::write(new, &built));
-        }
-    }
-    replace(&dir.join("libccd.so.2"), |new| std::os::unix::fs::symlink("libccd.so", new));
-    rename_symbols(&dir.join("libccd.a"), &dir.join("librs_ccd.a"));
+    cargo.extend(["--target-dir".to_owned(), text(&target)]);
+    let flags = format!("CARGO_ENCODED_RUSTFLAGS={}", rust_flags());
+    let variables = [
+        ("CARGO_BUILD", format!("cd {} && env {} {}", quoted([text(root())]), quoted([flags]), quoted(cargo))),
+        ("FROM", quoted([text(&release)])),
+        ("INTO", precision.name().to_owned()),
+        ("NM", quoted([tool("nm")])),
+        ("OBJCOPY", quoted([tool("objcopy")])),
+    ];
+    // Both precisions share their crates. Of parallel processes one builds, the others wait.
+    let lock = locked(&output_dir().join("library.lock"));
+    make("library", &variables, "make (for the library)");
     drop(lock);
-    LibraryBuild { dir, native_flags: native_flags() }
+    LibraryBuild { dir: output_dir().join(precision.name()), native_flags: native_flags() }
+}
+
+/// Makes a target of `programs.mk`.
+fn make(target: &str, variables: &[(&str, String)], what: &str) -> Written {
+    let mut make = Command::new("make");
+    make.args(["-s", "--no-print-directory", "-C"]).arg(output_dir()).env_remove("MAKEFLAGS");
+    make.arg("-f").arg(root().join("c-tests/harness/programs.mk")).arg(target);
+    must_succeed(make.args(variables.iter().map(|(name, value)| format!("{name}={value}"))), what)
+}
+
+/// Quotes words for a shell within make.
+fn quoted(words: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let quote = |word: &str| format!("'{}'", word.replace('\'', "'\\''").replace('$', "$$"));
+    words.into_iter().map(|word| quote(word.as_ref())).collect::<Vec<_>>().join(" ")
 }
 
 /// Opens a file and locks it against all other threads and processes.
@@ -205,9 +214,14 @@ pub fn locked(path: &Path) -> File {
     file.and_then(|file| file.lock().map(|()| file)).unwrap_or_else(|e| panic!("cannot lock {}: {e}", path.display()))
 }
 
-/// Returns the command of a tool for object files, which the environment may name.
+/// Returns the name of a tool for object files, which the environment may give.
+fn tool(name: &str) -> String {
+    std::env::var(name.to_uppercase()).unwrap_or_else(|_| name.to_owned())
+}
+
+/// Returns its command.
 pub fn binutils(name: &str) -> Command {
-    Command::new(std::env::var_os(name.to_uppercase()).unwrap_or_else(|| name.into()))
+    Command::new(tool(name))
 }
 
 /// Returns whether `command --version` succeeds.
@@ -252,53 +266,6 @@ pub fn emulated() -> bool {
 fn emulator() -> Vec<String> {
     let target = TARGET.to_uppercase().replace('-', "_");
     words(&format!("CARGO_TARGET_{target}_RUNNER"))
-}
-
-/// Copies the archive with `rs_` before every symbol of libccd, so that one process can link this
-/// library and the system's.
-fn rename_symbols(archive: &Path, renamed: &Path) {
-    if written_at(renamed) > written_at(archive) {
-        return;
-    }
-    let mut nm = binutils("nm");
-    nm.args(["-g", "--defined-only"]).arg(archive);
-    let symbols = must_succeed(&mut nm, "nm (Debian: binutils)").stdout;
-    let names = symbols.lines().filter_map(|line| line.split_whitespace().nth(2));
-    let ours = names.filter(|name| name.starts_with("ccd") || name.starts_with("__ccd"));
-    let options: BTreeSet<String> = ours.map(|name| format!("--redefine-sym={name}=rs_{name}")).collect();
-    assert!(!options.is_empty(), "{}: no symbol of libccd", archive.display());
-    replace(renamed, |new| {
-        must_succeed(binutils("objcopy").args(&options).arg(archive).arg(new), "objcopy (Debian: binutils)");
-        Ok(())
-    });
-}
-
-/// Returns the modification time of a file; `None` where there is none.
-fn written_at(path: &Path) -> Option<SystemTime> {
-    fs::metadata(path).and_then(|data| data.modified()).ok()
-}
-
-/// Returns whether a program is newer than the archives of its compile command and than every file in
-/// the compiler's dependency rule for make.
-fn is_up_to_date(program: &Path, command: &Command, rule: &Path) -> bool {
-    let rule = fs::read_to_string(rule).unwrap_or_default();
-    // Blanks within a path are escaped.
-    let rule = rule.replace("\\\n", "").replace("\\ ", "\0");
-    let files = rule.split_whitespace().skip(1).map(|word| PathBuf::from(word.replace('\0', " ")));
-    let arguments = command.get_args().map(PathBuf::from);
-    let archives = arguments.filter(|file| file.extension().is_some_and(|end| end == "a"));
-    let made = written_at(program);
-    !rule.is_empty() && files.chain(archives).all(|file| written_at(&file).is_some_and(|time| Some(time) < made))
-}
-
-/// Makes a file under a temporary name and moves it into place, so that the old file stays valid for
-/// processes that use it.
-fn replace(path: &Path, make: impl FnOnce(&Path) -> io::Result<()>) {
-    let made = tempfile::tempdir_in(path.parent().expect("a file in a folder")).and_then(|folder| {
-        let new = folder.path().join("new");
-        make(&new).and_then(|()| fs::rename(&new, path))
-    });
-    made.unwrap_or_else(|e| panic!("cannot make {}: {e}", path.display()));
 }
 
 /// Runs a tool; panics with its output unless it succeeds.
@@ -459,41 +426,42 @@ impl Program {
         compile.args(["-x", ["c", "c++"][usize::from(self.cpp)]]).arg(&self.source);
         compile.args(["-x", "none"]).args(&self.libraries);
         let mut library_path = None;
+        let mut archive = None;
         if self.link == Link::System {
             compile.arg("-lccd");
         } else {
             let built = library(self.precision);
+            let precision = self.precision.name();
             match self.link {
                 Link::OursShared => {
                     library_path = Some(built.dir.clone());
-                    compile.arg("-L").arg(&built.dir).arg("-lccd")
+                    compile.arg("-L").arg(&built.dir).arg("-lccd");
                 }
-                Link::OursStatic => compile.arg(built.dir.join("libccd.a")),
-                _ => compile.arg(built.dir.join("librs_ccd.a")).arg("-lccd"),
-            };
+                Link::OursStatic => archive = Some(format!("{precision}/libccd.a")),
+                _ => archive = Some(format!("{precision}/librs_ccd.a")),
+            }
+            compile.args(&archive);
+            if self.link == Link::OursRenamedAndSystem {
+                compile.arg("-lccd");
+            }
             if self.link != Link::OursShared {
                 compile.args(&built.native_flags);
             }
         }
         compile.arg("-lm");
 
-        // The hash of the command distinguishes programs of one name.
+        // The hash of the command distinguishes programs of one name. All tests and runs share the program until one of its
+        // files changes.
+        let words: Vec<_> = std::iter::once(compile.get_program()).chain(compile.get_args()).collect();
+        let command = quoted(words.into_iter().map(OsStr::to_string_lossy));
         let mut hash = DefaultHasher::new();
-        words_of(&compile).hash(&mut hash);
-        let dir = output_dir().join("programs");
-        fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
-        let path = dir.join(format!("{}-{:016x}", self.name, hash.finish()));
-        // All tests and runs share the program until one of its files changes.
-        let rule = path.with_extension("d");
-        let lock = locked(&rule);
-        if !is_up_to_date(&path, &compile, &rule) {
-            replace(&path, |new| {
-                let what = format!("the compiler (for {})", self.name);
-                let written = must_succeed(compile.arg("-MD").arg("-MF").arg(&rule).arg("-o").arg(new), &what);
-                print!("{}", written.stderr);
-                Ok(())
-            });
-        }
+        command.hash(&mut hash);
+        let program = format!("programs/{}-{:016x}", self.name, hash.finish());
+        let path = output_dir().join(&program);
+        fs::create_dir_all(path.parent().expect("a folder")).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        let variables = [("PROGRAM", program.clone()), ("COMPILE", command), ("ARCHIVE", archive.unwrap_or_default())];
+        let lock = locked(&path.with_extension("lock"));
+        print!("{}", make(&program, &variables, &format!("the compiler (for {})", self.name)).stderr);
         drop(lock);
 
         let executable = Executable { library_path, tools: self.tools, ..Executable::from_path(&self.name, path) };
