@@ -10,39 +10,36 @@ mod harness;
 #[path = "../../bench/measuring/mod.rs"]
 mod measuring;
 
-use clap::{Parser, Subcommand};
 use measuring::libraries::Libraries;
 use measuring::{callgrind, ledger, recorded};
 
-/// Speed and accuracy of penetration depth, this library beside others.
-#[derive(Parser)]
-#[command(name = "bench")]
-struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-    /// Passed by cargo to every benchmark.
-    #[arg(long, hide = true, global = true)]
-    bench: bool,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// Writes the support counts, errors, instructions and mispredictions with which a test compares changes.
-    Record,
-    /// Every chart as CSV and SVG.
-    Charts(charts::Options),
-    /// The pictures and their page from the CSV files that are there.
-    Redraw(charts::Options),
-    /// This library beside other engines, over the recorded contacts; downloads what it can.
-    Engines,
-}
+const USAGE: &str = "\
+usage: cargo bench -p lab -- COMMAND
+  charts [--quick] [--out DIR] [FIGURE...]  measure all figures or these (accuracy, vertices, coherence), as CSV and SVG
+  redraw [--out DIR]                        the pictures and their page from the CSV files that are there
+  record                                    the support counts, errors, instructions and mispredictions that a test judges
+  engines                                   this library beside other engines on recorded contacts; downloads what it can";
 
 fn main() {
-    match Arguments::parse().command {
-        Command::Record => record(),
-        Command::Charts(options) => charts::run(&options),
-        Command::Redraw(options) => charts::redraw(&options),
-        Command::Engines => charts::engines::run(),
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let mut take = |option: &str, count: usize| {
+        let at = words.iter().position(|word| word == option)?;
+        words.drain(at..(at + count).min(words.len())).next_back()
+    };
+    take("--bench", 1); // from cargo
+    let quick = take("--quick", 1).is_some();
+    let out = take("--out", 2).unwrap_or(charts::OUT.to_owned()).into();
+    let command = words.first().cloned().unwrap_or_default();
+    let options = charts::Options { quick, out, only: words.into_iter().skip(1).collect() };
+    match &*command {
+        "record" => record(),
+        "charts" => charts::run(&options),
+        "redraw" => charts::redraw(&options),
+        "engines" => charts::engines::run(),
+        _ => {
+            eprintln!("{USAGE}");
+            std::process::exit(2);
+        }
     }
 }
 

@@ -15,29 +15,22 @@ pub mod results;
 
 use std::path::PathBuf;
 
-use clap::Args;
-use indicatif::{ProgressIterator, ProgressStyle};
-
 use crate::measuring::csv;
 use crate::measuring::ledger::{self, Cost};
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::{Row, Runner};
 use peers::Peers;
 
-#[derive(Args)]
 pub struct Options {
     /// Fewer poses, tolerances and repetitions: two minutes.
-    #[arg(long)]
     pub quick: bool,
-    /// Measure these figures alone, as `coherence`; the others stay as they are.
-    #[arg(long)]
+    /// Measure these figures alone, as `coherence`; the others stay as they are. Empty: all.
     pub only: Vec<String>,
     /// Folder of the CSV files and pictures.
-    #[arg(long, default_value = OUT)]
     pub out: PathBuf,
 }
 
-const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../bench/charts");
+pub const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../bench/charts");
 
 /// Inputs of every measurement.
 pub struct Bench<'a> {
@@ -58,10 +51,9 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Iterates over items, with a progress bar on standard error.
-pub fn progress<'a, T>(items: &'a [T], what: &str) -> impl Iterator<Item = &'a T> + use<'a, T> {
-    let template = format!("{what} [{{elapsed_precise}}] {{wide_bar}} {{pos}}/{{len}}");
-    items.iter().progress_with_style(ProgressStyle::with_template(&template).expect("a template"))
+/// Iterates over items, and prints each on standard error.
+pub fn progress<'a, T: std::fmt::Debug>(items: &'a [T], what: &str) -> impl Iterator<Item = &'a T> {
+    items.iter().inspect(move |item| eprintln!("{what}: {item:?}"))
 }
 
 /// Folder of figures and pictures, and the line that says what was measured where and when.

@@ -3,8 +3,6 @@
 
 //! The tables of the charts' page, which is its own template: a table is written between its marks.
 
-use comfy_table::{Table, presets::ASCII_MARKDOWN};
-
 use super::Page;
 use super::paper::{AS_PUBLISHED, PAPER};
 use crate::harness;
@@ -15,13 +13,9 @@ use crate::measuring::scene::{DEPTHS, KINDS};
 
 /// Returns a table; `|` separates the cells of its head.
 pub fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
-    let mut table = Table::new();
-    table.load_style(ASCII_MARKDOWN);
-    table.set_header(head.split('|'));
-    for line in lines {
-        table.add_row(line);
-    }
-    table.to_string()
+    let head = format!("| {} |\n|{}", head.split('|').collect::<Vec<_>>().join(" | "), "---|".repeat(N));
+    let lines = lines.into_iter().map(|cells| format!("\n| {} |", cells.join(" | ")));
+    std::iter::once(head).chain(lines).collect()
 }
 
 pub fn times_faster(rows: &[Row]) -> String {
