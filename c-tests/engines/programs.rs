@@ -72,16 +72,6 @@ impl Output {
         keys.split(' ').map(|key| self.value(key)).sum()
     }
 
-    /// Returns the support points of a query, of those that were counted.
-    pub fn supports_per_query(&self) -> f64 {
-        self.value("own.supports") / self.value("own.queries")
-    }
-
-    /// Sets a counter that was measured otherwise.
-    pub fn set(&mut self, key: &str, value: f64) {
-        self.counters.insert(key.to_owned(), value);
-    }
-
     /// Describes those of these counters that were printed and are not zero.
     pub fn nonzero(&self, keys: &str) -> Vec<String> {
         let nonzero = keys.split(' ').filter_map(|key| Some((key, self.get(key).filter(|n| *n != 0.0)?)));

@@ -29,7 +29,7 @@ fn table(rows: &[Row]) -> String {
     let base = rows.iter().find(|r| r.method == METHODS[1].0).and_then(|r| r.ns);
     let percent = |p: f64| if p == 0.0 { "0".to_owned() } else { format!("{p:.2} %") };
     let lines = rows.iter().map(|r| {
-        [
+        vec![
             r.method.clone(),
             format!("{:.0}", r.instructions()),
             format!("{:.1}", r.supports),

@@ -12,33 +12,36 @@ use crate::measuring::methods::Start;
 use crate::measuring::scene::{DEPTHS, KINDS};
 
 /// Returns a table; `|` separates the cells of its head.
-pub fn markdown<const N: usize>(head: &str, lines: impl IntoIterator<Item = [String; N]>) -> String {
-    let head = format!("| {} |\n|{}", head.split('|').collect::<Vec<_>>().join(" | "), "---|".repeat(N));
+pub fn markdown(head: &str, lines: impl IntoIterator<Item = Vec<String>>) -> String {
+    let head: Vec<_> = head.split('|').collect();
+    let start = format!("| {} |\n|{}", head.join(" | "), "---|".repeat(head.len()));
     let lines = lines.into_iter().map(|cells| format!("\n| {} |", cells.join(" | ")));
-    std::iter::once(head).chain(lines).collect()
+    std::iter::once(start).chain(lines).collect()
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.1}"))
 }
 
 pub fn times_faster(rows: &[Row]) -> String {
+    // Method, start and tolerance, and the tolerance of libccd's EPA.
+    let columns = [
+        ("ccdPenetrationLocal", Start::Guess5, 1e-6, 1e-6),
+        ("ccdPenetrationLocal", Start::Guess5, 1e-6, 1e-10),
+        ("ccdPenetrationProven", Start::None, 1e-6, 1e-6),
+        ("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED, 1e-6),
+        ("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED, 1e-10),
+    ];
     let lines = PAPER.iter().map(|(set, faster)| {
-        let ns = |method: &str, start: Start, tolerance: f64| {
-            let is_wanted =
-                |r: &&Row| (&*r.set, &*r.method, r.start, r.tolerance) == (*set, method, start, Some(tolerance));
-            rows.iter().find(is_wanted).and_then(|r| r.ns)
+        let ns = |wanted| {
+            let of = |r: &&Row| (&*r.set, (&*r.method, r.start, r.tolerance)) == (*set, wanted);
+            rows.iter().find(of).and_then(|r| r.ns)
         };
-        let ratio = |method: &str, start: Start, tolerance: f64, epa_tolerance: f64| {
-            let epa = ns("libccd ccdGJKPenetration", Start::None, epa_tolerance);
-            let ratio = epa.zip(ns(method, start, tolerance)).map(|(epa, ns)| format!("{:.1}", epa / ns));
-            ratio.unwrap_or("-".to_owned())
+        let ratio = |(method, start, tolerance, epa)| {
+            let epa = ns(("libccd ccdGJKPenetration", Start::None, Some(epa)));
+            number(epa.zip(ns((method, start, Some(tolerance)))).map(|(epa, ns)| epa / ns))
         };
-        [
-            super::kind(set),
-            ratio("ccdPenetrationLocal", Start::Guess5, 1e-6, 1e-6),
-            ratio("ccdPenetrationLocal", Start::Guess5, 1e-6, 1e-10),
-            ratio("ccdPenetrationProven", Start::None, 1e-6, 1e-6),
-            ratio("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED, 1e-6),
-            ratio("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED, 1e-10),
-            faster.to_string(),
-        ]
+        [vec![super::kind(set)], columns.map(ratio).into(), vec![faster.to_string()]].concat()
     });
     let head = "pair|local, EPA 1e-6|local, EPA 1e-10|proven, EPA 1e-6|\
                 Algorithm 4/5, EPA 1e-6|Algorithm 4/5, EPA 1e-10|*in the paper*";
@@ -46,25 +49,24 @@ pub fn times_faster(rows: &[Row]) -> String {
 }
 
 pub fn coherence(rows: &[Row]) -> String {
-    let mut sets: Vec<&str> = rows.iter().map(|row| &*row.set).collect();
-    sets.dedup();
-    let lines = sets.into_iter().map(|set| {
-        let supports = |method: &str, start: Start, degrees: f64| {
-            let is_wanted = |r: &&Row| (&*r.set, &*r.method, r.start, r.x) == (set, method, start, Some(degrees));
-            rows.iter().find(is_wanted).map_or("-".to_owned(), |r| format!("{:.1}", r.supports))
+    // Method, start, degrees a frame.
+    let columns = [
+        ("ccdPenetrationLocal", Start::Warm, 0.1),
+        ("ccdPenetrationLocal", Start::Warm, 0.5),
+        ("ccdPenetrationLocal", Start::Warm, 2.0),
+        ("ccdPenetrationLocal", Start::Cold, 0.5),
+        ("ccdPenetrationProven", Start::Warm, 0.1),
+        ("ccdPenetrationProven", Start::Warm, 0.5),
+        ("ccdPenetrationProven", Start::Warm, 2.0),
+        ("ccdPenetrationProven", Start::None, 0.5),
+        ("libccd ccdGJKPenetration", Start::None, 0.5),
+    ];
+    let lines = rows.chunk_by(|a, b| a.set == b.set).map(|rows| {
+        let supports = |(method, start, degrees)| {
+            let of = |r: &&Row| (&*r.method, r.start, r.x) == (method, start, Some(degrees));
+            number(rows.iter().find(of).map(|r| r.supports))
         };
-        [
-            super::kind(set),
-            supports("ccdPenetrationLocal", Start::Warm, 0.1),
-            supports("ccdPenetrationLocal", Start::Warm, 0.5),
-            supports("ccdPenetrationLocal", Start::Warm, 2.0),
-            supports("ccdPenetrationLocal", Start::Cold, 0.5),
-            supports("ccdPenetrationProven", Start::Warm, 0.1),
-            supports("ccdPenetrationProven", Start::Warm, 0.5),
-            supports("ccdPenetrationProven", Start::Warm, 2.0),
-            supports("ccdPenetrationProven", Start::None, 0.5),
-            supports("libccd ccdGJKPenetration", Start::None, 0.5),
-        ]
+        [vec![super::kind(&rows[0].set)], columns.map(supports).into()].concat()
     });
     let head = "pair|local, warm, 0.1°|0.5°|2°|local, cold|\
                 proven, warm, 0.1°|0.5°|2°|proven, cold|libccd EPA";
@@ -82,7 +84,7 @@ pub fn instructions(costs: &[Cost]) -> String {
     let lines = hits.map(|hit| {
         let is_miss = |c: &&Cost| (&*c.set, &c.method) == ("recorded misses", &hit.method);
         let share = format!("{:.0}", 100.0 * hit.callbacks / hit.instructions);
-        [hit.method.clone(), cost(Some(hit)), share, cost(costs.iter().find(is_miss))]
+        vec![hit.method.clone(), cost(Some(hit)), share, cost(costs.iter().find(is_miss))]
     });
     markdown("call|hit|of it support functions, %|miss", lines)
 }
@@ -94,8 +96,7 @@ pub fn instructions_by_depth(costs: &[Cost]) -> String {
             let is_wanted = |c: &&Cost| c.method == method && c.set == format!("{kind} {depth}");
             cost(costs.iter().find(is_wanted))
         };
-        let [shallow, medium, deep, near, far] = DEPTHS.map(of);
-        [kind.to_owned(), method.to_owned(), shallow, medium, deep, near, far]
+        [vec![kind.to_owned(), method.to_owned()], DEPTHS.map(of).into()].concat()
     };
     let lines = KINDS
         .iter()
