@@ -70,8 +70,6 @@ impl Precision {
 pub struct LibraryBuild {
     /// Folder of libccd.so, libccd.so.2, libccd.a and librs_ccd.a.
     pub dir: PathBuf,
-    /// Linker flags for a program with one of the archives, from rustc.
-    pub native_flags: Vec<String>,
 }
 
 /// Returns the repository's root.
@@ -147,22 +145,6 @@ fn rust_flags() -> String {
     [given, own.to_vec()].concat().join("\u{1f}")
 }
 
-/// Returns the linker flags for a program with a static library of Rust's.
-fn native_flags() -> Vec<String> {
-    let empty = tempfile::tempdir().expect("a temporary directory");
-    let source = empty.path().join("empty.rs");
-    fs::write(&source, "").unwrap_or_else(|e| panic!("{}: {e}", source.display()));
-    let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
-    rustc.args(["--crate-type", "staticlib", "--print", "native-static-libs"]);
-    if emulated() {
-        rustc.args(["--target", TARGET]);
-    }
-    let messages = must_succeed(rustc.arg("-o").arg(empty.path().join("empty.a")).arg(&source), "rustc").stderr;
-    let flags = messages.lines().find_map(|line| line.split_once("native-static-libs: "));
-    let (_, flags) = flags.unwrap_or_else(|| panic!("rustc did not report native-static-libs:\n{messages}"));
-    flags.split_whitespace().map(String::from).collect()
-}
-
 fn build_library(precision: Precision) -> LibraryBuild {
     let text = |path: &Path| path.display().to_string();
     let target = cargo_dir();
@@ -173,8 +155,10 @@ fn build_library(precision: Precision) -> LibraryBuild {
         add("--features single");
     }
     let mut release = target.join("release");
+    let mut rustc = vec![std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned())];
     if emulated() {
         add(&format!("--target {TARGET}"));
+        rustc.push(format!("--target={TARGET}"));
         release = target.join(TARGET).join("release");
     }
     cargo.extend(["--target-dir".to_owned(), text(&target)]);
@@ -183,14 +167,15 @@ fn build_library(precision: Precision) -> LibraryBuild {
         ("CARGO_BUILD", format!("cd {} && env {} {}", quoted([text(root())]), quoted([flags]), quoted(cargo))),
         ("FROM", quoted([text(&release)])),
         ("INTO", precision.name().to_owned()),
-        ("NM", quoted([tool("nm")])),
-        ("OBJCOPY", quoted([tool("objcopy")])),
+        ("SYMBOLS", quoted([tool("nm")])),
+        ("RENAME", quoted([tool("objcopy")])),
+        ("COMPILE_RUST", quoted(rustc)),
     ];
     // Both precisions share their crates. Of parallel processes one builds, the others wait.
     let lock = locked(&output_dir().join("library.lock"));
     make("library", &variables, "make (for the library)");
     drop(lock);
-    LibraryBuild { dir: output_dir().join(precision.name()), native_flags: native_flags() }
+    LibraryBuild { dir: output_dir().join(precision.name()) }
 }
 
 /// Makes a target of `programs.mk`.
@@ -425,45 +410,36 @@ impl Program {
         // clang compiles a C source as C++ only with -x.
         compile.args(["-x", ["c", "c++"][usize::from(self.cpp)]]).arg(&self.source);
         compile.args(["-x", "none"]).args(&self.libraries);
-        let mut library_path = None;
-        let mut archive = None;
-        if self.link == Link::System {
-            compile.arg("-lccd");
-        } else {
-            let built = library(self.precision);
-            let precision = self.precision.name();
-            match self.link {
-                Link::OursShared => {
-                    library_path = Some(built.dir.clone());
-                    compile.arg("-L").arg(&built.dir).arg("-lccd");
-                }
-                Link::OursStatic => archive = Some(format!("{precision}/libccd.a")),
-                _ => archive = Some(format!("{precision}/librs_ccd.a")),
-            }
-            compile.args(&archive);
-            if self.link == Link::OursRenamedAndSystem {
-                compile.arg("-lccd");
-            }
-            if self.link != Link::OursShared {
-                compile.args(&built.native_flags);
-            }
+        let link = match self.link {
+            Link::OursShared => "shared",
+            Link::OursStatic => "static",
+            Link::OursRenamedAndSystem => "renamed",
+            Link::System => "system",
+        };
+        if self.link != Link::System {
+            library(self.precision);
         }
-        compile.arg("-lm");
 
         // The hash of the command distinguishes programs of one name. All tests and runs share the program until one of its
         // files changes.
         let words: Vec<_> = std::iter::once(compile.get_program()).chain(compile.get_args()).collect();
         let command = quoted(words.into_iter().map(OsStr::to_string_lossy));
         let mut hash = DefaultHasher::new();
-        command.hash(&mut hash);
+        (&command, link, self.precision).hash(&mut hash);
         let program = format!("programs/{}-{:016x}", self.name, hash.finish());
         let path = output_dir().join(&program);
         fs::create_dir_all(path.parent().expect("a folder")).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        let variables = [("PROGRAM", program.clone()), ("COMPILE", command), ("ARCHIVE", archive.unwrap_or_default())];
+        let variables = [
+            ("PROGRAM", program.clone()),
+            ("COMPILE", command),
+            ("LINK", link.to_owned()),
+            ("INTO", self.precision.name().to_owned()),
+        ];
         let lock = locked(&path.with_extension("lock"));
         print!("{}", make(&program, &variables, &format!("the compiler (for {})", self.name)).stderr);
         drop(lock);
 
+        let library_path = (self.link == Link::OursShared).then(|| library(self.precision).dir.clone());
         let executable = Executable { library_path, tools: self.tools, ..Executable::from_path(&self.name, path) };
         match self.link {
             Link::OursShared => executable.assert_loads_ours(),

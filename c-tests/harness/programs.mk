@@ -5,13 +5,16 @@
 # Targets are relative to the folder of all output, in which it runs: their names have no blanks, while those of sources
 # and of the repository may. A file is made under another name and moved, so that processes that use the old one go on.
 #
-#   library       FROM: where CARGO_BUILD leaves libccd.so and libccd.a; INTO: double or single
-#   $(PROGRAM)    COMPILE: the whole command but for -o; ARCHIVE: the one that it links, if any
+#   library       FROM: where CARGO_BUILD leaves libccd.so and libccd.a; INTO: double or single; the commands SYMBOLS (nm),
+#                 RENAME (objcopy) and COMPILE_RUST, under names that mean nothing to cargo, since make exports them
+#   $(PROGRAM)    COMPILE: the command but for libccd and -o; LINK: one of those below; INTO
 
 .DELETE_ON_ERROR:
 .PHONY: library cargo
 
-library: $(INTO)/libccd.so $(INTO)/librs_ccd.a
+ifndef PROGRAM
+
+library: $(INTO)/libccd.so $(INTO)/librs_ccd.a $(INTO)/native.txt
 	@[ -e $(INTO)/libccd.so.2 ] || ln -s libccd.so $(INTO)/libccd.so.2
 
 # Touched only when they change: a newer file would recompile all programs.
@@ -23,13 +26,28 @@ $(INTO)/libccd.so $(INTO)/libccd.a: cargo
 
 # With rs_ before each of libccd's names, so that one process can link this library and the system's.
 $(INTO)/librs_ccd.a: $(INTO)/libccd.a
-	@$(NM) -g --defined-only $< | sed -n 's/.* [A-Z] \(\(__\)\{0,1\}ccd.*\)/\1 rs_\1/p' | sort -u >$(INTO)/renamed.txt
+	@$(SYMBOLS) -g --defined-only $< | sed -n 's/.* [A-Z] \(\(__\)\{0,1\}ccd.*\)/\1 rs_\1/p' | sort -u >$(INTO)/renamed.txt
 	@test -s $(INTO)/renamed.txt
-	@$(OBJCOPY) --redefine-syms=$(INTO)/renamed.txt $< $@.new && mv $@.new $@
+	@$(RENAME) --redefine-syms=$(INTO)/renamed.txt $< $@.new && mv $@.new $@
+
+# The linker's flags for a static library of Rust's.
+$(INTO)/native.txt: $(INTO)/libccd.a
+	@$(COMPILE_RUST) --crate-type staticlib --print native-static-libs -o $(INTO)/empty.a - </dev/null 2>&1 | \
+	    sed -n 's/.*native-static-libs: //p' >$@
+	@test -s $@
+
+else
+
+ARCHIVE_static = $(INTO)/libccd.a
+ARCHIVE_renamed = $(INTO)/librs_ccd.a
+LIBCCD_shared = -L$(INTO) -lccd
+LIBCCD_static = $(ARCHIVE_static) $$(cat $(INTO)/native.txt)
+LIBCCD_renamed = $(ARCHIVE_renamed) -lccd $$(cat $(INTO)/native.txt)
+LIBCCD_system = -lccd
 
 # The compiler writes which files a program depends on.
-ifdef PROGRAM
 -include $(PROGRAM).d
-$(PROGRAM): $(ARCHIVE)
-	@$(COMPILE) -MD -MP -MF $@.d -MT $@ -o $@.new && mv $@.new $@
+$(PROGRAM): $(ARCHIVE_$(LINK))
+	@$(COMPILE) $(LIBCCD_$(LINK)) -lm -MD -MP -MF $@.d -MT $@ -o $@.new && mv $@.new $@
+
 endif
