@@ -9,11 +9,10 @@
 #     --swap       give the program this library's answers, not libccd's
 #     --keep DIR   write the worst wrong answers there, as C files for replay.sh
 #     --no-times   measure no times: fewer calls of the callbacks
-#     --libccd F   the libccd to compare with (default: the one that the program loads, or if that is this
-#                  library, the system's other one)
+#     --libccd F   the libccd to compare with (default: the program's; where that is this library, the system's)
 #     --library F  a built libccd.so of this library (default: built now)
-# The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART. Its exit code is
-# this command's; 125: the program could not be run. Runs setup.sh itself.
+# The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART, or load it later, as in `compare.sh python
+# app.py`. Its exit code is this command's; 125: the program could not be run. Runs setup.sh itself.
 
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
