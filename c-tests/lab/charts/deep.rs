@@ -41,20 +41,16 @@ pub struct Polytope {
 impl Polytope {
     /// Makes a polytope from a closed, convex triangle mesh around its origin.
     fn new(vertices: &[V], triangles: &[[usize; 3]]) -> Self {
-        let normal = |t: &[usize; 3]| {
-            let [a, b, c] = t.map(|i| vertices[i]);
-            let n = (b - a).cross(&(c - a)).normalize();
-            if n.dot(&a) < 0.0 { -n } else { n }
-        };
         let corner = |v: usize| {
             // The fan of triangles around v, in the order of shared edges.
             let around = triangles.iter().filter_map(|t| {
                 let k = t.iter().position(|&i| i == v)?;
-                Some((t[(k + 1) % 3], t[(k + 2) % 3], normal(t)))
+                let [p, q] = [t[(k + 1) % 3], t[(k + 2) % 3]];
+                let n = (vertices[p] - vertices[v]).cross(&(vertices[q] - vertices[v])).normalize();
+                Some((p, q, n * n.dot(&vertices[v]).signum()))
             });
             let mut fan: Vec<(usize, usize, V)> = around.collect();
-            let (mut neighbours, mut normals) = (Vec::new(), Vec::new());
-            let mut edge = fan[0].0;
+            let (mut neighbours, mut normals, mut edge) = (Vec::new(), Vec::new(), fan[0].0);
             while let Some(k) = fan.iter().position(|f| f.0 == edge || f.1 == edge) {
                 let (p, q, n) = fan.swap_remove(k);
                 neighbours.push(edge);
@@ -63,29 +59,27 @@ impl Polytope {
             }
             Corner { at: vertices[v], neighbours, normals }
         };
-        Self {
-            corners: (0..vertices.len()).map(corner).collect(),
-            size: vertices.iter().map(|v| v.norm()).fold(0.0, f64::max),
-        }
+        let size = vertices.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        Self { corners: (0..vertices.len()).map(corner).collect(), size }
     }
 
     /// Reads the two polytopes of a pair set (c-tests/bench/pairs/README.md); none if one has no triangles.
     pub fn of_set(name: &str) -> Option<[Self; 2]> {
         let bytes = std::fs::read(Scene::file(name)).ok()?;
+        let mut at = 16; // behind the magic and two counts
+        let mut take = |n: usize| {
+            at += n;
+            bytes.get(at - n..at)
+        };
         let real = |b: &[u8]| b.try_into().map_or(f64::NAN, f64::from_le_bytes);
-        let index = |b: &[u8]| b.try_into().map_or(usize::MAX, |b| u32::from_le_bytes(b) as usize);
-        let mut rest = bytes.get(16..)?; // behind the magic and two counts
+        let index = |b: &[u8], at: usize| u32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]) as usize;
         let mut shape = || {
-            let (head, tail) = rest.split_at_checked(40)?;
-            let (num_vertices, num_triangles) = (index(&head[4..8]), index(&head[8..12]));
-            let (vertices, tail) = tail.split_at_checked(24 * num_vertices)?;
-            let (triangles, tail) = tail.split_at_checked(12 * num_triangles)?;
-            rest = tail;
-            let vertex = |b: &[u8]| V::from_iterator(b.chunks_exact(8).map(real));
-            let triangle = |b: &[u8]| [0, 4, 8].map(|at| index(&b[at..at + 4]));
-            let vertices: Vec<V> = vertices.chunks_exact(24).map(vertex).collect();
-            let triangles: Vec<[usize; 3]> = triangles.chunks_exact(12).map(triangle).collect();
-            (num_triangles > 0).then(|| Self::new(&vertices, &triangles))
+            let head = take(40)?;
+            let vertices = take(24 * index(head, 4))?.chunks_exact(24);
+            let vertices: Vec<V> = vertices.map(|b| V::from_iterator(b.chunks_exact(8).map(real))).collect();
+            let triangles = take(12 * index(head, 8))?.chunks_exact(12);
+            let triangles: Vec<_> = triangles.map(|b| [0, 4, 8].map(|at| index(b, at))).collect();
+            (!triangles.is_empty()).then(|| Self::new(&vertices, &triangles))
         };
         Some([shape()?, shape()?])
     }
@@ -115,27 +109,22 @@ struct Placed<'a>(&'a Polytope, &'a Polytope, Matrix3<f64>, V);
 /// vertices farthest along `start` have no common normal.
 fn penetration(placed: &Placed, start: V, hub: &mut (usize, usize)) -> Option<(f64, V)> {
     let Placed(a, b, turn, _) = *placed;
-    let back = turn.transpose() * -start;
-    *hub = (a.extremal(&start, hub.0), b.extremal(&back, hub.1));
+    *hub = (a.extremal(&start, hub.0), b.extremal(&(turn.transpose() * -start), hub.1));
     let mut best = closest_face(placed, *hub)?;
+    // Vertices of a face: those that tie with the hub along its normal.
+    let slack = 1e-10 * (a.size + b.size);
+    let ties = |p: &Polytope, at: usize, along: V| -> Vec<usize> {
+        let corner = &p.corners[at];
+        let near = corner.neighbours.iter().copied();
+        std::iter::once(at).chain(near.filter(|&i| along.dot(&(p.corners[i].at - corner.at)) >= -slack)).collect()
+    };
     // The distance falls at every step, and faces are finite.
     loop {
         let (from, (depth, n)) = (*hub, best);
-        // Vertices of the face: those that tie with the hub along n.
-        let slack = 1e-10 * (a.size + b.size);
-        let ties = |p: &Polytope, at: usize, along: V| -> Vec<usize> {
-            let here = p.corners[at].at;
-            let tied = |&i: &usize| along.dot(&(p.corners[i].at - here)) >= -slack;
-            let near = p.corners[at].neighbours.iter().copied().filter(tied);
-            std::iter::once(at).chain(near).collect()
-        };
         let in_b = ties(b, from.1, turn.transpose() * -n);
-        for i in ties(a, from.0, n) {
-            for &j in &in_b {
-                let face = closest_face(placed, (i, j));
-                if let Some(face) = face.filter(|face| face.0 < best.0 - slack * 1e-3) {
-                    (best, *hub) = (face, (i, j));
-                }
+        for (i, j) in ties(a, from.0, n).iter().flat_map(|&i| in_b.iter().map(move |&j| (i, j))) {
+            if let Some(face) = closest_face(placed, (i, j)).filter(|face| face.0 < best.0 - slack * 1e-3) {
+                (best, *hub) = (face, (i, j));
             }
         }
         // Also where it is NaN.
