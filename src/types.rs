@@ -34,8 +34,8 @@ pub enum Status {
     SupportLimit,
     /// Rounding ended the search: more support points would not help. Valid as for [`Status::IterationLimit`].
     Rounding,
-    /// Two points of a support function contradict each other. The depth is sound for the points that were returned,
-    /// nothing is proven, and the lower bound of the depth is 0.
+    /// Two points of a support function contradict each other, or a center is outside its object. The depth is sound for
+    /// the points that were returned, nothing is proven, and the lower bound of the depth is 0.
     InconsistentSupport,
 }
 
