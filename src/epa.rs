@@ -8,8 +8,12 @@
 //! |---|---|
 //! | [`penetration`] | the driver; its head lists the steps of the global query |
 //! | [`expand`] | the loop that expands the polytope |
+//! | [`buffers`] | the buffers of both, in three sizes |
+//! | [`witness`] | the witness points of the upper bound |
 //! | [`polytope`] | the polytope: insertion of points, closest face, error bound; no support calls |
 
+pub mod buffers;
 pub mod expand;
 pub mod penetration;
 pub mod polytope;
+pub mod witness;

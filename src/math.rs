@@ -115,7 +115,7 @@ pub const POLE: Vec3 = Vec3::new(0.36, 0.48, 0.8);
 
 /// The library's upper limit of [`Settings::max_iterations`](crate::types::Settings). It acts in the
 /// query that has no smaller limit of its own: the distance. The other limits, and the sum of
-/// support points that a query may take, are at [`MAX_PROVEN_POINTS`](crate::epa::penetration::MAX_PROVEN_POINTS).
+/// support points that a query may take, are at [`MAX_PROVEN_POINTS`](crate::epa::buffers::MAX_PROVEN_POINTS).
 /// Measured (`cargo run --release -p lab --bin campaigns -- wide`): most minima that are not proven after 360 support
 /// points are not proven after 1,400 either.
 pub const ITERATION_CAP: u64 = 380;

@@ -12,7 +12,7 @@
 pub mod directional;
 pub mod gao;
 
-use crate::epa::penetration::MAX_PROVEN_POINTS;
+use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::Vec3;
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::Stop;

@@ -18,7 +18,8 @@
 pub mod signed_distance;
 
 use crate::contact::center_of_pressure::contact_position;
-use crate::epa::penetration::{Arena, EpaRequest, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
+use crate::epa::buffers::{Arena, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
+use crate::epa::penetration::EpaRequest;
 use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
@@ -303,8 +304,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Penetration, Stop> {
         let mut set = VertexSet::EMPTY;
-        let mut hit = Penetration::default();
-        *state = epa::penetration::penetration(query, first, request, arena, &mut set, &mut hit)?;
+        let (mut hit, warm) =
+            epa::penetration::penetration(query, first, request, arena, &mut set)?;
+        *state = warm;
         if hit.status == Status::Converged {
             if self.wanted.pos {
                 hit.pos = self.contact_position(&set, &hit)?;

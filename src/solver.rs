@@ -3,7 +3,7 @@
 
 //! The penetration queries by name: what C and Rust callers choose between.
 
-use crate::epa::penetration::Arena;
+use crate::epa::buffers::Arena;
 use crate::math::Vec3;
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::Stop;

@@ -12,31 +12,25 @@
 //! 3. Otherwise evaluate the callbacks, along the face's normal or along a direction that a sphere fit suggests
 //!    ([`evaluate_beyond`]). Insert the point if it is above the face.
 //! 4. If no point above the face is found along its normal, the support value may lower the upper bound. If it does
-//!    not, the loop ends with [`ExpandEnd::Rounding`].
+//!    not, the loop ends with [`Status::Rounding`].
 //!
 //! Departures. Planes are interpolated, not computed from corners ([`crate::epa::polytope`]). Known differences are
 //! inserted before callbacks are evaluated. The origin may be outside the polytope at first (its distance to a face is
 //! then negative), so that the polytope is the separation test too.
 //!
-//! Outputs. The upper bound is valid for every end. [`EpaPolytope::lower_bound`] is valid if the polytope encloses its
-//! interior point, and:
-//!
-//! | end | the lower bound is valid |
-//! |---|---|
-//! | [`ExpandEnd::Converged`], [`ExpandEnd::SupportLimit`], [`ExpandEnd::IterationLimit`] | always |
-//! | [`ExpandEnd::Rounding`], [`ExpandEnd::NoRoom`] | if the distance of the closest face is not negative |
+//! Outputs. The upper bound is valid for every end. [`EpaPolytope::lower_bound`](crate::epa::polytope::EpaPolytope::lower_bound) is valid if the polytope encloses its
+//! interior point and the distance of the closest face is not negative.
 
-use crate::epa::polytope::EpaPolytope;
-use crate::geometry::barycentric::triangle;
+use crate::epa::buffers::EpaSurface;
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
-use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
+use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::is_shallow;
 use crate::trace;
-use crate::types::Settings;
+use crate::types::{Settings, Status};
 
 /// The fraction of the gap between the closest face and the upper bound that a known difference must close to
 /// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
@@ -74,95 +68,9 @@ impl EpaLimits {
     }
 }
 
-/// The corners of the polytope: the vertex pair of each corner index, or the mark of the interior point.
-pub struct EpaCorners<const C: usize> {
-    pairs: [VertexPair; C],
-    len: usize,
-}
-
-impl<const C: usize> EpaCorners<C> {
-    /// No corners. All bytes are zero, so that the initialisation needs no copy of a constant.
-    pub const EMPTY: Self = Self {
-        pairs: [VertexPair { a: 0, b: 0 }; C],
-        len: 0,
-    };
-
-    /// Copies the corners of smaller buffers.
-    pub fn copy_from<const M: usize>(&mut self, other: &EpaCorners<M>) {
-        const { assert!(M <= C) };
-        self.pairs[..M].copy_from_slice(&other.pairs);
-        self.len = other.len;
-    }
-
-    /// Begins with the corners of a tetrahedron.
-    pub fn start(&mut self, corners: &[Vertex; 4]) {
-        self.len = 0;
-        for corner in corners {
-            self.push(corner.pair);
-        }
-    }
-
-    /// Returns whether there is no room for another corner.
-    #[inline(always)]
-    fn is_full(&self) -> bool {
-        self.len >= C
-    }
-
-    /// Adds a corner and returns its index.
-    #[inline(always)]
-    fn push(&mut self, pair: VertexPair) -> usize {
-        let id = self.len.min(C - 1);
-        self.pairs[id] = pair;
-        self.len = id + 1;
-        id
-    }
-
-    /// Returns a corner. `interior`: the interior point.
-    #[inline(always)]
-    pub fn vertex<const N: usize>(&self, set: &VertexSet<N>, interior: &Vec3, id: usize) -> Vertex {
-        let pair = self.pairs[id.min(C - 1)];
-        let w = if pair.is_interior() {
-            *interior
-        } else {
-            set.difference(pair)
-        };
-        Vertex { w, pair }
-    }
-
-    /// Returns the corners of a face.
-    #[inline(always)]
-    pub fn face<const N: usize>(
-        &self,
-        set: &VertexSet<N>,
-        interior: &Vec3,
-        ids: [usize; 3],
-    ) -> [Vertex; 3] {
-        let [a, b, c] = ids;
-        let vertex = |id| self.vertex(set, interior, id);
-        [vertex(a), vertex(b), vertex(c)]
-    }
-}
-
-/// Reason why an expansion ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ExpandEnd {
-    /// The bounds met.
-    Converged,
-    /// [`EpaLimits::max_points`].
-    SupportLimit,
-    /// [`EpaLimits::max_iterations`].
-    IterationLimit,
-    /// No point is above the closest face, but its distance is not the upper bound.
-    Rounding,
-    /// The buffer of the vertices, corners or faces is full.
-    NoRoom,
-}
-
-/// Expands the polytope until the bounds meet, by the steps at the head of this file. `iterations`: the count of the
-/// query, which continues. `has_larger`: true if the caller continues in larger buffers when these are full.
-///
-/// One loop over shared state: the parts use the closest face, the bounds and the buffers, so that a split would pass
-/// nine arguments.
+/// Expands the polytope until the bounds meet, by the steps at the head of this file. Returns why it ended; `None` if a
+/// buffer is full. `iterations`: the count of the query, which continues. `has_larger`: true if the caller continues in
+/// larger buffers when these are full.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -173,17 +81,17 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
     interior: &Vec3,
-    corners: &mut EpaCorners<C>,
-    polytope: &mut EpaPolytope<F>,
+    surface: &mut EpaSurface<C, F>,
     iterations: &mut u64,
     limits: &EpaLimits,
     has_larger: bool,
-) -> Result<ExpandEnd, Stop> {
+) -> Result<Option<Status>, Stop> {
     trace::stage("expansion");
     // The key of the closest face when a fit's direction found nothing above it.
     let mut last_failed_key = -1.0;
     // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
     loop {
+        let polytope = &mut surface.polytope;
         let closest = polytope.closest_face();
         polytope.set_size(query.scale.size());
         let upper = query.upper.depth;
@@ -201,18 +109,18 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             if polytope.refresh_keys(target_key) {
                 continue;
             }
-            return Ok(ExpandEnd::Converged);
+            return Ok(Some(Status::Converged));
         }
         // While the origin is outside, the buffers are the only limit: the caller's limits must not
         // change an overlap into a separation.
         if is_inside && *iterations >= limits.max_iterations {
-            return Ok(ExpandEnd::IterationLimit);
+            return Ok(Some(Status::IterationLimit));
         }
         if is_inside && query.support_points() >= limits.max_points {
-            return Ok(ExpandEnd::SupportLimit);
+            return Ok(Some(Status::SupportLimit));
         }
-        if set.is_full() || corners.is_full() {
-            return Ok(ExpandEnd::NoRoom);
+        if set.is_full() || surface.corners.is_full() {
+            return Ok(None);
         }
         let face = closest.face;
         let (normal, offset) = (polytope.normal(face), polytope.offset(face));
@@ -223,10 +131,10 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let is_gain =
             !(closest.key > 0.0) || height * distance > GAIN_REL * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
-        let has_room = has_larger || C - corners.len > N - set.len();
+        let has_room = has_larger || surface.corners.room() > N - set.len();
         if !(height > level && is_gain && has_room) {
             let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
-            let vertices = |set: &VertexSet<N>| corners.face(set, interior, polytope.corners(face));
+            let vertices = |set: &VertexSet<N>| surface.face(set, interior, face);
             let (sample, source) =
                 evaluate_beyond(query, set, fit, vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
@@ -239,49 +147,16 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             } else if query.upper.depth < upper {
                 continue;
             } else if !(height > level) {
-                return Ok(ExpandEnd::Rounding);
+                return Ok(Some(Status::Rounding));
             }
             // Otherwise the callbacks returned less than a known difference, in contradiction: insert that.
         }
+        let EpaSurface { corners, polytope } = &mut *surface;
         let id = corners.push(w.pair);
         let corner = |id| corners.vertex(set, interior, id).w;
         if !polytope.insert(face, id, &w.w, rounding, &corner) {
-            corners.len -= 1;
-            return Ok(ExpandEnd::NoRoom);
+            corners.pop();
+            return Ok(None);
         }
     }
-}
-
-/// Returns the face through which the ray along `dir` leaves the polytope, approximately.
-///
-/// This is the closest face, `closest`, if its distance to the foot, `dir` times the depth, is small. Otherwise it is
-/// the face closest to the foot among those whose plane the ray crosses before the depth: several faces may lie in one
-/// plane.
-pub fn exit_face<const F: usize>(
-    polytope: &EpaPolytope<F>,
-    corner: &impl Fn(usize) -> Vec3,
-    closest: usize,
-    dir: &Vec3,
-    depth: f64,
-    tolerance: f64,
-) -> usize {
-    let foot = dir * depth;
-    let distance2 = |f: usize| {
-        let [a, b, c] = polytope.corners(f).map(corner);
-        triangle(&foot, &a, &b, &c).distance2
-    };
-    let mut best = (closest, distance2(closest));
-    if best.1 <= tolerance * lesser(tolerance, depth) {
-        return best.0;
-    }
-    for f in polytope.faces() {
-        let rise = polytope.normal(f).dot(dir);
-        if rise > 0.0 && polytope.offset(f) <= rise * (depth + tolerance) {
-            let other = distance2(f);
-            if other < best.1 {
-                best = (f, other);
-            }
-        }
-    }
-    best.0
 }

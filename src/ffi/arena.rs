@@ -10,7 +10,7 @@
 use core::ptr::NonNull;
 
 use super::{calloc, free};
-use crate::epa::penetration::{Arena, EpaBuffers};
+use crate::epa::buffers::{Arena, EpaBuffers};
 use crate::minkowski::support::Fault;
 
 /// The block of one query; empty until the query asks for it.

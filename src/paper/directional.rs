@@ -12,7 +12,7 @@
 //! Outputs. `status`: converged if the bounds differ by at most the effective tolerance, whatever ended the search. The
 //! overlap is not proven here.
 
-use crate::epa::penetration::MAX_PROVEN_POINTS;
+use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::Vec3;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::Stop;

@@ -29,7 +29,7 @@
 //! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
 //! method on support calls only; the local search of this library, on known vertices, is [`crate::local`].
 
-use crate::epa::penetration::MAX_PROVEN_POINTS;
+use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::Stop;

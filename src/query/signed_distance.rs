@@ -16,7 +16,7 @@
 //! Outputs: both bounds are valid, whatever the status, except for [`Status::InconsistentSupport`]. The points lie on
 //! the surfaces of the objects with their margins.
 
-use crate::epa::penetration::Arena;
+use crate::epa::buffers::Arena;
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
 use crate::minkowski::sphere_fit::SphereFit;

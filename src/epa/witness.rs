@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The witness points of the upper bound, from the polytope of the lower bound.
+
+use crate::epa::buffers::EpaSurface;
+use crate::geometry::barycentric::triangle;
+use crate::math::{Vec3, lesser};
+use crate::minkowski::support::SupportPoint;
+use crate::minkowski::support_query::SupportPlane;
+use crate::minkowski::vertex_set::{Vertex, VertexSet};
+
+/// Returns the witness points of the upper bound. They are those of the point closest to the foot, depth · dir, on
+/// one of these triangles:
+///
+/// 1. the face, if that point is within `gap`, metres, of the foot;
+/// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction;
+/// 3. or with one corner replaced by the interior point.
+#[inline(always)]
+pub fn witness_points<const N: usize>(
+    upper: &SupportPlane,
+    interior: &SupportPoint,
+    set: &VertexSet<N>,
+    face: &[Vertex; 3],
+    gap: f64,
+) -> [Vec3; 2] {
+    let foot = upper.dir * upper.depth;
+    let closest = |[a, b, c]: &[Vec3; 3]| triangle(&foot, a, b, c);
+    let corners = face.each_ref().map(|v| v.w);
+    let mut best = closest(&corners);
+    let mut replaced = None;
+    if best.distance2 > gap * lesser(gap, upper.depth) {
+        for point in [&upper.point, interior] {
+            for i in 0..3 {
+                let mut triangle = corners;
+                triangle[i] = point.v;
+                let other = closest(&triangle);
+                if other.distance2 < best.distance2 {
+                    (best, replaced) = (other, Some((i, *point)));
+                }
+            }
+        }
+    }
+    let mut points = [Vec3::zeros(); 2];
+    for (i, (weight, v)) in best.weights.iter().zip(face).enumerate() {
+        let point = match replaced {
+            Some((k, point)) if k == i => point,
+            _ if v.pair.is_interior() => *interior,
+            _ => set.point(v.pair),
+        };
+        points[0] += point.v1 * *weight;
+        points[1] += point.v2 * *weight;
+    }
+    points
+}
+
+/// Returns the corners of the face through which the ray along the direction of the upper bound leaves the polytope,
+/// approximately.
+///
+/// This is the closest face, `closest`, if its distance to the foot, `dir` times the depth, is within `gap`, metres.
+/// Otherwise it is the face closest to the foot among those whose plane the ray crosses before the depth: several faces
+/// may lie in one plane.
+pub fn exit_face<const N: usize, const C: usize, const F: usize>(
+    upper: &SupportPlane,
+    interior: &Vec3,
+    set: &VertexSet<N>,
+    surface: &EpaSurface<C, F>,
+    closest: usize,
+    gap: f64,
+) -> [Vertex; 3] {
+    let (foot, polytope) = (upper.dir * upper.depth, &surface.polytope);
+    let distance2 = |f: usize| {
+        let [a, b, c] = surface.face(set, interior, f).map(|v| v.w);
+        triangle(&foot, &a, &b, &c).distance2
+    };
+    let mut best = (closest, distance2(closest));
+    if best.1 > gap * lesser(gap, upper.depth) {
+        for f in polytope.faces() {
+            let rise = polytope.normal(f).dot(&upper.dir);
+            if rise > 0.0 && polytope.offset(f) <= rise * (upper.depth + gap) {
+                let other = distance2(f);
+                if other < best.1 {
+                    best = (f, other);
+                }
+            }
+        }
+    }
+    surface.face(set, interior, best.0)
+}
