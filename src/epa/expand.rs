@@ -160,3 +160,151 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::minkowski::support::Fault;
+    use crate::minkowski::vertex_set::{Vertex, VertexPair};
+    use crate::shapes::{corners, difference, hull};
+
+    const LIMITS: EpaLimits = EpaLimits {
+        gap: GapLimit::new(if EPSILON < 1e-10 { 1e-9 } else { 1e-4 }, 0.0),
+        max_points: 1000,
+        max_iterations: 1000,
+    };
+
+    /// The directions of four support points whose tetrahedron contains the middle of a box.
+    const START: [[f64; 3]; 4] = [
+        [1.0, 1.0, 1.0],
+        [-1.0, -1.0, 1.0],
+        [-1.0, 1.0, -1.0],
+        [1.0, -1.0, -1.0],
+    ];
+
+    /// Expands the tetrahedron of the support points along [`START`] of a box around the origin with half extents 1, 2
+    /// and 3, moved by `at`, with room for `N` vertices. Support calls after the start return `after`, if given. Returns
+    /// the end, the upper and the lower bound, and the number of iterations.
+    fn expand_box<const N: usize>(
+        at: Vec3,
+        limits: &EpaLimits,
+        after: Option<Vec3>,
+    ) -> Result<(Option<Status>, f64, f64, u64), Stop> {
+        let points: Vec<Vec3> = (corners(Vec3::new(1.0, 2.0, 3.0)).iter())
+            .map(|p| p + at)
+            .collect();
+        let calls = core::cell::Cell::new(0);
+        let shape = hull(&points);
+        let a = |n: &Vec3| {
+            calls.set(calls.get() + 1);
+            after
+                .filter(|_| calls.get() > START.len())
+                .unwrap_or_else(|| shape(n))
+        };
+        let md = difference(a, |_: &Vec3| Vec3::zeros());
+        let mut query = SupportQuery::new(&md, None, 0.0);
+        let mut set = VertexSet::<N>::EMPTY;
+        let mut start = [Vertex {
+            w: at,
+            pair: VertexPair::INTERIOR,
+        }; 4];
+        for (corner, n) in start.iter_mut().zip(START) {
+            *corner = query
+                .evaluate(&mut set, &Vec3::from(n).normalize())?
+                .vertex();
+        }
+        let mut surface = EpaSurface::<32, 64>::blank(query.scale.size());
+        assert!(surface.start(&start, query.scale.size(), false));
+        let mut iterations = 0;
+        let end = expand(
+            &mut query,
+            &mut set,
+            &mut SphereFit::default(),
+            &at,
+            &mut surface,
+            &mut iterations,
+            limits,
+            false,
+        )?;
+        let lower = surface
+            .polytope
+            .lower_bound(&surface.polytope.closest_face());
+        Ok((end, query.upper.depth, lower, iterations))
+    }
+
+    #[test]
+    fn the_bounds_meet_at_the_distance_of_the_closest_side() {
+        let tolerance = LIMITS.gap.tolerance;
+        for (at, depth) in [
+            (Vec3::zeros(), 1.0),
+            (Vec3::x() * 0.75, 0.25),
+            (Vec3::y() * 1.5, 0.5),
+        ] {
+            let (end, upper, lower, iterations) = expand_box::<32>(at, &LIMITS, None).unwrap();
+            assert_eq!(end, Some(Status::Converged));
+            assert!((upper - depth).abs() <= tolerance, "{at} {upper}");
+            assert!(lower <= depth && lower >= depth - tolerance, "{at} {lower}");
+            assert!(iterations > 0);
+        }
+    }
+
+    #[test]
+    fn limits_and_full_buffers_end_with_honest_bounds() {
+        let few = EpaLimits {
+            max_iterations: 1,
+            ..LIMITS
+        };
+        let none = EpaLimits {
+            max_points: 4,
+            ..LIMITS
+        };
+        for (found, end) in [
+            (
+                expand_box::<32>(Vec3::zeros(), &few, None),
+                Some(Status::IterationLimit),
+            ),
+            (
+                expand_box::<32>(Vec3::zeros(), &none, None),
+                Some(Status::SupportLimit),
+            ),
+            (expand_box::<5>(Vec3::zeros(), &LIMITS, None), None),
+        ] {
+            let (found, upper, lower, _) = found.unwrap();
+            assert_eq!(found, end);
+            assert!(
+                upper >= 1.0 && (0.0..=1.0).contains(&lower),
+                "{upper} {lower}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_nan_is_a_fault() {
+        let nan = Some(Vec3::repeat(f64::NAN));
+        let found = expand_box::<32>(Vec3::zeros(), &LIMITS, nan);
+        assert_eq!(found.unwrap_err(), Stop::Fault(Fault::NonFinite));
+    }
+
+    /// The origin is outside the first tetrahedron, and inside the box.
+    #[test]
+    fn the_polytope_comes_to_contain_an_origin_that_is_outside_at_first() {
+        let at = Vec3::new(0.9, 1.9, 2.9);
+        let (end, upper, lower, _) = expand_box::<32>(at, &LIMITS, None).unwrap();
+        assert_eq!(end, Some(Status::Converged));
+        let tolerance = LIMITS.gap.tolerance;
+        assert!(
+            (upper - 0.1).abs() <= tolerance && lower >= 0.1 - tolerance,
+            "{upper} {lower}"
+        );
+    }
+
+    #[test]
+    fn a_box_beside_the_origin_is_separated() {
+        let found = expand_box::<32>(Vec3::new(0.0, 2.5, 0.0), &LIMITS, None);
+        assert!(
+            matches!(found, Err(Stop::Separated(n)) if n.y < -0.5),
+            "{found:?}"
+        );
+    }
+}

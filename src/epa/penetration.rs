@@ -533,3 +533,258 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::epa::buffers::MAX_PROVEN_POINTS;
+    use crate::math::EPSILON;
+    use crate::minkowski::support::{Fault, MinkowskiDifference};
+    use crate::shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
+    use crate::types::Settings;
+    use core::cell::Cell;
+
+    const TOLERANCE: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-4 };
+
+    struct Heap(Box<EpaBuffers>, bool);
+
+    impl Heap {
+        fn new() -> Self {
+            let (set, surface) = (VertexSet::EMPTY, EpaSurface::BLANK);
+            Self(Box::new(EpaBuffers { set, surface }), false)
+        }
+    }
+
+    impl Arena for Heap {
+        fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
+            self.1 = true;
+            Ok(&mut self.0)
+        }
+    }
+
+    /// Returns the result of a cold query along the ray from `center`, or along x.
+    fn run<A: SupportMap, B: SupportMap>(
+        md: &MinkowskiDifference<A, B>,
+        center: Option<&SupportPoint>,
+        max_points: u64,
+        arena: Option<&mut dyn Arena>,
+    ) -> Result<Penetration, Stop> {
+        let settings = Settings {
+            tolerance: TOLERANCE,
+            max_iterations: 1000,
+        };
+        let request = EpaRequest {
+            center,
+            ray: center
+                .and_then(|c| normalise_unscaled(&-c.v))
+                .unwrap_or(Vec3::x()),
+            warm: WarmStart::COLD,
+            limits: EpaLimits::new(&settings, 0.0, max_points),
+            wants_points: true,
+        };
+        let mut query = SupportQuery::new(md, center, TOLERANCE);
+        let first = query.evaluate_first(&request.ray, false)?;
+        let mut set = VertexSet::EMPTY;
+        let (hit, warm) = penetration(&mut query, &first, &request, arena, &mut set)?;
+        assert_eq!((warm.dir, warm.depth), (hit.dir, hit.depth));
+        Ok(hit)
+    }
+
+    /// Returns a point as the difference of the centers of an object there and one at the origin.
+    fn center(v: Vec3) -> SupportPoint {
+        SupportPoint {
+            v,
+            v1: v,
+            v2: Vec3::zeros(),
+        }
+    }
+
+    fn point() -> impl SupportMap {
+        |_: &Vec3| Vec3::zeros()
+    }
+
+    /// A tetrahedron around the origin with faces at known distances: the closest one is the depth.
+    #[test]
+    fn the_depth_of_a_point_in_a_tetrahedron_is_its_distance_from_the_closest_face() {
+        let mut r = Random::new(41);
+        for _ in 0..300 {
+            // A simplex of corner 0 and three unit edges, seen from a point inside it.
+            let inside = Vec3::new(
+                r.within(0.05, 0.3),
+                r.within(0.05, 0.3),
+                r.within(0.05, 0.3),
+            );
+            let turn = r.rotation();
+            let points = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+            let points = points.map(|p| turn * (p - inside));
+            let slanted = (1.0 - inside.sum()) / 3f64.sqrt();
+            let depth = inside.min().min(slanted);
+            let md = difference(hull(&points), point());
+            let mean = center((points[0] + points[1] + points[2] + points[3]) * 0.25);
+            for center in [None, Some(&mean)] {
+                let hit = run(&md, center, MAX_PROVEN_POINTS, None).unwrap();
+                assert_eq!(hit.status, Status::Converged);
+                assert!((hit.depth - depth).abs() <= TOLERANCE, "{hit:?} {depth}");
+                assert!(hit.depth_lower <= depth && hit.depth_lower >= depth - TOLERANCE);
+                assert!(hit.has_sound_witnesses(TOLERANCE), "{hit:?}");
+                assert_eq!(hit.point2, Vec3::zeros());
+            }
+        }
+    }
+
+    #[test]
+    fn boxes_one_in_the_other_have_the_depth_of_the_shortest_way_out() {
+        let mut r = Random::new(42);
+        for _ in 0..100 {
+            let half = Vec3::new(r.within(1.0, 2.0), r.within(1.0, 2.0), r.within(1.0, 2.0));
+            let (at, turn) = (r.vector(0.3), r.rotation());
+            let (a, b) = (corners(half), corners(Vec3::repeat(0.2)));
+            let (a, b) = (
+                placed(&a, &turn, Vec3::zeros()),
+                placed(&b, &turn, turn * at),
+            );
+            let md = difference(hull(&a), hull(&b));
+            let depth = (half + Vec3::repeat(0.2) - at.abs()).min();
+            for center in [None, Some(&center(-(turn * at)))] {
+                let hit = run(&md, center, MAX_PROVEN_POINTS, None).unwrap();
+                assert_eq!(hit.status, Status::Converged);
+                assert!((hit.depth - depth).abs() <= TOLERANCE, "{hit:?} {depth}");
+            }
+        }
+    }
+
+    #[test]
+    fn separated_objects_have_a_separating_axis() {
+        let mut r = Random::new(43);
+        let a = corners(Vec3::repeat(1.0));
+        for _ in 0..100 {
+            let b = placed(&a, &r.rotation(), r.direction() * 3.5);
+            let md = difference(hull(&a), hull(&b));
+            let Err(Stop::Separated(n)) = run(&md, None, MAX_PROVEN_POINTS, None) else {
+                panic!("the boxes do not overlap");
+            };
+            assert!(md.support(&n).unwrap().v.dot(&n) < 0.0);
+        }
+    }
+
+    /// The support function is right until one of its calls returns a NaN.
+    #[test]
+    fn a_nan_of_any_call_is_a_fault() {
+        let boxes = corners(Vec3::new(1.0, 1.1, 1.2));
+        let mut faults = 0;
+        for bad in 0..100 {
+            let calls = Cell::new(0);
+            let a = |n: &Vec3| {
+                calls.set(calls.get() + 1);
+                let wrong = if calls.get() > bad { f64::NAN } else { 0.0 };
+                hull(&boxes).support(n) + Vec3::repeat(wrong)
+            };
+            let md = difference(
+                a,
+                hull(&placed(
+                    &boxes,
+                    &nalgebra::Rotation3::new(Vec3::repeat(0.4)),
+                    Vec3::repeat(0.3),
+                )),
+            );
+            match run(&md, None, MAX_PROVEN_POINTS, None) {
+                Ok(hit) => assert!(calls.get() <= bad && hit.status == Status::Converged),
+                Err(stop) => {
+                    assert_eq!(stop, Stop::Fault(Fault::NonFinite));
+                    assert_eq!(calls.get(), bad + 1);
+                    faults += 1;
+                }
+            }
+        }
+        assert!(faults > 5 && faults < 100, "{faults}");
+    }
+
+    /// Two triangles in one plane: D is flat, and the objects are in contact at most.
+    #[test]
+    fn a_flat_difference_contains_no_ball() {
+        let triangle = [Vec3::new(-1.0, -1.0, 0.0), Vec3::x() * 2.0, Vec3::y() * 2.0];
+        let md = difference(hull(&triangle), hull(&triangle));
+        for center in [None, Some(&center(Vec3::new(0.1, 0.2, 0.0)))] {
+            let found = run(&md, center, MAX_PROVEN_POINTS, None);
+            assert!(
+                matches!(found, Err(Stop::Separated(n)) if n.z.abs() > 0.999),
+                "{found:?}"
+            );
+        }
+    }
+
+    /// A plate of this thickness: the depth is half of it, whatever the start.
+    #[test]
+    fn a_thin_difference_has_its_thickness_as_depth() {
+        for thickness in [1e-2, 1e-3] {
+            let plate = corners(Vec3::new(1.0, 1.0, 0.5 * thickness));
+            let md = difference(hull(&plate), point());
+            let hit = run(&md, None, MAX_PROVEN_POINTS, None).unwrap();
+            assert_eq!(hit.status, Status::Converged);
+            assert!((hit.depth - 0.5 * thickness).abs() <= TOLERANCE, "{hit:?}");
+        }
+    }
+
+    /// Nearly concentric, nearly round ellipsoids need more vertices than the buffers on the stack have.
+    #[test]
+    fn full_buffers_are_continued_in_larger_ones() {
+        let radii = Vec3::new(1.0, 1.01, 1.02);
+        let at = Vec3::new(0.005, 0.002, 0.001);
+        let md = || {
+            difference(
+                ellipsoid(radii, nalgebra::Rotation3::identity(), Vec3::zeros()),
+                ellipsoid(
+                    radii,
+                    nalgebra::Rotation3::new(Vec3::new(0.3, 0.2, 0.1)),
+                    at,
+                ),
+            )
+        };
+        let mut heap = Heap::new();
+        let large = run(&md(), None, MAX_PROVEN_POINTS, Some(&mut heap)).unwrap();
+        assert!(heap.1, "the buffers on the stack were enough");
+        // Without larger buffers, and with fewer points, the bounds are honest and wider.
+        let stack = run(&md(), None, MAX_PROVEN_POINTS, None).unwrap();
+        let few = run(&md(), None, 40, None).unwrap();
+        for hit in [&stack, &few] {
+            assert_eq!(hit.status, Status::SupportLimit);
+            assert!(hit.depth >= large.depth_lower && hit.depth_lower <= large.depth);
+        }
+        assert!(0.0 < few.depth_lower && few.depth_lower < stack.depth_lower);
+        assert!(stack.depth_lower < large.depth_lower);
+    }
+
+    /// A center beyond a support plane: the depth is still one of a separating direction, and nothing is proven.
+    #[test]
+    fn a_center_outside_its_object_proves_nothing() {
+        let mut r = Random::new(44);
+        let mut found = 0;
+        for _ in 0..200 {
+            let md = difference(
+                ball(Vec3::x() * r.within(0.5, 2.5), 1.0),
+                ball(Vec3::zeros(), 1.0),
+            );
+            match run(
+                &md,
+                Some(&center(r.direction() * 5.0)),
+                MAX_PROVEN_POINTS,
+                None,
+            ) {
+                Ok(hit) => {
+                    let h = md.support(&hit.dir).unwrap().v.dot(&hit.dir);
+                    assert!((h - hit.depth).abs() < 1e3 * EPSILON, "{hit:?}");
+                    if hit.status == Status::InconsistentSupport {
+                        assert_eq!(hit.depth_lower, 0.0);
+                        found += 1;
+                    }
+                }
+                Err(stop) => {
+                    assert!(
+                        matches!(stop, Stop::Separated(n) if md.support(&n).unwrap().v.dot(&n) < 1e-5)
+                    );
+                }
+            }
+        }
+        assert!(found > 10, "{found}");
+    }
+}

@@ -490,3 +490,183 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     }
     Ok((sample, next.source))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::EPSILON;
+    use crate::minkowski::support::MinkowskiDifference;
+    use crate::shapes::{Random, Shape, ball, corners, difference, hull};
+
+    const ROUNDING: f64 = 1e3 * EPSILON;
+
+    type Balls = MinkowskiDifference<Shape<'static>, Shape<'static>>;
+
+    /// Balls of the radii 0.5 and 0.25, whose centers are 0.6 apart along x: the least support value is 0.15, along x.
+    fn balls() -> Balls {
+        difference(ball(Vec3::zeros(), 0.5), ball(Vec3::x() * 0.6, 0.25))
+    }
+
+    /// Evaluates three directions around x.
+    fn corners_around_x(
+        query: &mut SupportQuery<'_, Shape<'static>, Shape<'static>>,
+        set: &mut VertexSet<24>,
+    ) -> [Vertex; 3] {
+        [[0.4, 0.0], [-0.2, 0.3], [-0.2, -0.3]].map(|[y, z]| {
+            let n = Vec3::new(1.0, y, z).normalize();
+            query.evaluate(set, &n).unwrap().vertex()
+        })
+    }
+
+    #[test]
+    fn two_samples_of_balls_give_their_radii_and_the_least_support_value() {
+        let md = balls();
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::EMPTY);
+        let corners = corners_around_x(&mut query, &mut set);
+        for mut fit in [SphereFit::default(), SphereFit::exact()] {
+            assert_eq!(fit.predict(&set, &corners, &Vec3::x()), None);
+            fit.update(&set, &query.upper);
+            assert!(
+                (fit.radius[0] - 0.5).abs() < ROUNDING && (fit.radius[1] - 0.25).abs() < ROUNDING
+            );
+            let (dir, value) = fit.predict(&set, &corners, &Vec3::x()).unwrap();
+            assert!(
+                (dir - Vec3::x()).norm() < ROUNDING && (value - 0.15).abs() < ROUNDING,
+                "{dir} {value}"
+            );
+            assert!(fit.are_spheres_confirmed(&set, &corners, &query.upper, 1e-3));
+            let [p, q] = fit.witnesses(&set, &corners, &dir);
+            assert!(
+                (p - Vec3::x() * 0.5).norm() < ROUNDING && (q - Vec3::x() * 0.35).norm() < ROUNDING
+            );
+        }
+    }
+
+    #[test]
+    fn vertices_of_polytopes_and_nan_give_no_radius() {
+        let mut r = Random::new(45);
+        let md = difference(
+            hull(&corners(Vec3::repeat(1.0))),
+            hull(&corners(Vec3::repeat(0.5))),
+        );
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::<24>::EMPTY);
+        // In one octant there is one corner; two corners of one edge look like a sphere from two directions alone.
+        for _ in 0..10 {
+            let n = r.direction().abs() + Vec3::repeat(0.01);
+            query.evaluate(&mut set, &n.normalize()).unwrap();
+        }
+        let mut fit = SphereFit::default();
+        fit.update(&set, &query.upper);
+        assert_eq!(fit.radius, [0.0; 2]);
+        let mut upper = query.upper;
+        upper.point.v1 = Vec3::repeat(f64::NAN);
+        upper.dir = Vec3::repeat(f64::NAN);
+        fit.restart();
+        fit.update(&set, &upper);
+        assert_eq!(fit.radius, [0.0; 2]);
+    }
+
+    #[test]
+    fn a_prediction_is_evaluated_and_confirmed() {
+        let md = balls();
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::EMPTY);
+        let corners = corners_around_x(&mut query, &mut set);
+        query.evaluate(&mut set, &Vec3::z()).unwrap();
+        let mut fit = SphereFit::default();
+        let normal = Vec3::new(1.0, 0.1, 0.1);
+        let mut beyond = |fit: &mut SphereFit, along_normal| {
+            let corners = |_: &VertexSet<24>| corners;
+            evaluate_beyond(
+                &mut query,
+                &mut set,
+                fit,
+                corners,
+                &normal,
+                1e-6,
+                along_normal,
+            )
+            .unwrap()
+        };
+        let (sample, source) = beyond(&mut fit, true);
+        assert!(source == DirectionSource::Normal && sample.h > 0.151 && fit.radius == [0.0; 2]);
+        let (sample, source) = beyond(&mut fit, false);
+        assert!(source == DirectionSource::Prediction && (sample.h - 0.15).abs() < ROUNDING);
+        assert!(fit.is_confirmed && fit.confirmed_radius() == fit.radius);
+        // The upper bound is what the fit predicts: a direction beside it is next.
+        let (sample, source) = beyond(&mut fit, false);
+        assert!(source != DirectionSource::Prediction && sample.h > 0.15 - ROUNDING);
+    }
+
+    #[test]
+    fn wrong_predictions_reset_the_radii_and_end_the_fit() {
+        let md = balls();
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::EMPTY);
+        let corners = corners_around_x(&mut query, &mut set);
+        query.evaluate(&mut set, &Vec3::z()).unwrap();
+        let mut fit = SphereFit {
+            compared: usize::MAX,
+            ..SphereFit::default()
+        };
+        for i in 0..MAX_FAILED_PREDICTIONS {
+            // The core points of these radii predict a lower support value than the balls have.
+            fit.radius = [0.2, 0.2];
+            let corners = |_: &VertexSet<24>| corners;
+            let (_, source) = evaluate_beyond(
+                &mut query,
+                &mut set,
+                &mut fit,
+                corners,
+                &Vec3::x(),
+                1e-6,
+                false,
+            )
+            .unwrap();
+            assert_eq!((source, fit.failures), (DirectionSource::Prediction, i + 1));
+            assert!(
+                fit.radius == [0.0; 2] && !fit.is_confirmed && fit.confirmed_radius() == [0.0; 2]
+            );
+        }
+        fit.radius = [0.2, 0.2];
+        let corners = |_: &VertexSet<24>| corners;
+        let (_, source) = evaluate_beyond(
+            &mut query,
+            &mut set,
+            &mut fit,
+            corners,
+            &Vec3::x(),
+            1e-6,
+            false,
+        )
+        .unwrap();
+        assert_eq!(source, DirectionSource::Normal);
+    }
+
+    #[test]
+    fn a_tilted_direction_is_between_the_lowest_and_the_normal() {
+        let md = balls();
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::EMPTY);
+        let corners = corners_around_x(&mut query, &mut set);
+        let fit = SphereFit::warm([0.5, 0.25]);
+        let (gap, upper) = (1e-4, 0.15);
+        for (normal, expected) in [
+            (Vec3::new(1.0, 1.0, 0.0), true),
+            (Vec3::x(), false),
+            (Vec3::y(), false),
+        ] {
+            let tilted =
+                fit.tilted_from_lowest(&set, &corners, &Vec3::x(), upper, &normal.normalize(), gap);
+            assert!(tilted.is_none_or(|n| (n.norm() - 1.0).abs() < ROUNDING
+                && n.x > normal.normalize().x
+                && n.y > 0.0));
+            assert!(expected || tilted.is_none(), "{tilted:?}");
+        }
+        let near = [Vec3::x(); 3].map(|n| query.evaluate(&mut set, &n).unwrap().vertex());
+        let n = Vec3::new(1.0, 1.0, 0.0).normalize();
+        let tilted = fit
+            .tilted_from_lowest(&set, &near, &Vec3::x(), upper, &n, gap)
+            .unwrap();
+        // The first ring is as wide as the gap allows.
+        let first = 2.0 * (gap / 0.75).sqrt();
+        assert!((tilted.y / tilted.x - first).abs() < 1e-6, "{tilted}");
+    }
+}
