@@ -24,7 +24,7 @@ pub const MAX_DEFAULT_POINTS: u64 = 160;
 pub const MAX_PROVEN_POINTS: u64 = 320;
 
 /// The number of vertices of the small buffers, 6 KB on the stack with their corners and faces: enough for shallow
-/// contacts and most polytopes. (The compiler initialises less than 2 KB by stores, more by a slower loop.)
+/// contacts and most polytopes.
 pub const SMALL_VERTICES: usize = 24;
 const SMALL_CORNERS: usize = 32;
 const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
@@ -61,7 +61,7 @@ pub struct EpaCorners<const C: usize> {
 }
 
 impl<const C: usize> EpaCorners<C> {
-    /// No corners. All bytes are zero, so that the initialisation needs no copy of a constant.
+    /// No corners. All bytes are zero: codegen, see README.
     pub const EMPTY: Self = Self {
         pairs: [VertexPair { a: 0, b: 0 }; C],
         len: 0,

@@ -50,8 +50,6 @@
 //! A struct of arrays: one sweep over the keys finds the closest face, without a heap. A half-edge has the index
 //! 4 · face + edge; edge i leads from corner i to corner i + 1, counterclockwise seen from outside. Free faces have
 //! the key +∞ and form a linked list.
-//!
-//! Above 400 lines of code: insertion, repairs and error bound share the arrays and the invariant.
 
 use crate::geometry::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
 use crate::math::{Vec3, larger, lesser, normal};
@@ -84,8 +82,7 @@ const INSERTION_ERROR_ULPS: f64 = 20.0;
 #[repr(C)]
 pub struct EpaPolytope<const F: usize> {
     planes: [[f64; 4]; F],
-    /// An ulp of the size of D, metres. In this place it splits the zeros of the arrays into two blocks, for which the
-    /// compiler makes vector stores, where one larger block is filled byte by byte.
+    /// An ulp of the size of D, metres. Here in the middle of the arrays: codegen, see README.
     ulp: f64,
     /// The key of each face: its signed squared distance d|d| / |N|², with the index of the face in the low bits.
     keys: [f64; F],
@@ -122,8 +119,7 @@ pub struct ClosestFace {
 }
 
 impl<const F: usize> EpaPolytope<F> {
-    /// A polytope without faces, to be filled by [`EpaPolytope::start`]. All bytes are zero, so that the initialisation
-    /// needs no copy of a constant.
+    /// A polytope without faces, to be filled by [`EpaPolytope::start`]. All bytes are zero: codegen, see README.
     pub const BLANK: Self = Self {
         planes: [[0.0; 4]; F],
         ulp: 0.0,
@@ -397,8 +393,6 @@ impl<const F: usize> EpaPolytope<F> {
 
     /// Inserts a point by a depth-first walk over the visible faces. The walk meets the edges of the horizon in their
     /// cyclic order, so that each new face is made and linked at once.
-    ///
-    /// One loop over the stack, the list of visible faces and the fan; a split would pass all of them.
     #[inline(always)]
     fn walk_visible(
         &mut self,

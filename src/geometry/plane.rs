@@ -7,9 +7,7 @@
 //! corner is at most [`PLANE_ERROR_ULPS`] ulps of the size of D below its plane; the distance of the plane from the
 //! origin has the same error. [`crate::epa::polytope`] adds to it what interpolation rounds.
 //!
-//! The arithmetic is on pairs of numbers, which the compiler turns into packed instructions. With scalar
-//! expressions it pairs other numbers and stores planes in pieces. Measured: 10 to 17 % more instructions for a whole
-//! query.
+//! The arithmetic is on pairs of numbers: codegen, see README.
 
 use crate::math::{Vec3, larger, lesser};
 
@@ -67,7 +65,7 @@ impl Plane {
     /// Makes the point (p, −1), for [`Plane::height`].
     #[inline(always)]
     pub fn point(p: &Vec3) -> Self {
-        // `black_box` keeps the multiplication by −1 in the packed instruction.
+        // codegen: see README.
         Self::new(p, core::hint::black_box(-1.0))
     }
 

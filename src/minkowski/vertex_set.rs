@@ -63,8 +63,7 @@ impl<const N: usize> VertexSet<N> {
     };
     /// The low bits of a dot product that are replaced by the index of its vertex.
     const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
-    /// The bit above the index, which is always set, so that no tagged product is ±0 and the maximum compiles to
-    /// one instruction.
+    /// The bit above the index, which is always set, so that no tagged product is ±0: codegen, see README.
     const INDEX_MARK: u64 = N.next_power_of_two() as u64;
 
     /// Returns an index that is in range for any `i`, so that no access is checked.
@@ -220,7 +219,7 @@ impl<const N: usize> VertexSet<N> {
         let [x, y, z] = &self.coords;
         let mut best = [f64::NEG_INFINITY; 2];
         let mut index = [0; 2];
-        // Not known to be equal, so that the indices of both lanes are counted by one packed instruction.
+        // codegen: see README.
         let step = core::hint::black_box(&[1, 1]);
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
