@@ -123,11 +123,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     set.push(&query.upper.dir, first);
     let warm = &request.warm;
     let is_warm = warm.kind == WarmKind::Overlap;
-    // The ray is evaluated too if the warm direction is only a guess (its depth is 0), if its support value is more
-    // than twice the last depth, or if both objects are round, where its vertex is a poor corner of a portal. Negated
-    // for NaN.
+    // The ray is evaluated too if the warm direction is only a guess (its depth is 0), or if both objects are round, where
+    // its vertex is a poor corner of a portal.
     let is_round = warm.radius[0] * warm.radius[1] > 0.0;
-    if is_warm && (is_round || !(query.upper.depth <= 2.0 * warm.depth)) {
+    if is_warm && (is_round || !(warm.depth > 0.0)) {
         query.evaluate(set, &request.ray)?;
     }
     let mut solver = Solver {
