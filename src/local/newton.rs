@@ -17,6 +17,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
+use crate::local::{Model, Prediction};
 use crate::math::{Vec3, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::MIN_ANGLE2;
 use crate::minkowski::support_query::SupportPlane;
@@ -25,25 +26,19 @@ use crate::minkowski::vertex_set::VertexSet;
 /// The largest tangent of the angle of Newton's step, and of the angle between the directions of the upper bound and
 /// of the entries from which the Hessian is computed.
 const MAX_NEWTON_TAN: f64 = 0.4;
+/// The least squared sine between the changes of direction of the two entries.
+const MIN_WIDTH2: f64 = 0.1;
+/// The least determinant of a Hessian with a minimum, in products of its diagonal.
+const MIN_DETERMINANT_REL: f64 = 0.01;
 /// The largest relative difference of e and f at which D counts as smooth between two entries.
 const SMOOTH_REL_TOL: f64 = 0.1;
-
-/// The minimum of the support function that Newton's step predicts.
-pub struct NewtonStep {
-    /// Unit.
-    pub dir: Vec3,
-    /// The predicted support value, metres.
-    pub value: f64,
-    /// The unit vector perpendicular to the direction of the upper bound along which D is the flattest.
-    pub flattest: Vec3,
-}
 
 /// Returns the minimum that Newton's step from the entry of the upper bound predicts; `None` if the curvature there
 /// is unknown, or if the support function has no minimum near there.
 ///
 /// For directions n + x, x perpendicular to n, the support function is h + g x + x R x / 2: g is the component of the
 /// support point perpendicular to n, and R is its derivative. Divided by |n + x| it has the gradient g + (R − h) x.
-pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> Option<NewtonStep> {
+pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> Option<Prediction> {
     let n = upper.dir;
     let at = upper.point.v;
     let first = closest_entry(set, upper, |_| true)?;
@@ -57,7 +52,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
     // Not on a line with the first.
     let second = closest_entry(set, upper, |k| {
         let x = dir_change(k);
-        x1.perp(&x).powi(2) > 0.1 * x.norm_squared() * x1.norm_squared()
+        x1.perp(&x).powi(2) > MIN_WIDTH2 * x.norm_squared() * x1.norm_squared()
     })?;
     let x2 = dir_change(second);
     let [y1, y2] = [first, second].map(vertex_change);
@@ -67,7 +62,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
     let h = upper.depth;
     let hessian = curvature - Matrix2::identity() * h;
     let (a, c) = (hessian.m11, hessian.m22);
-    let is_minimum = a > 0.0 && hessian.determinant() > 0.01 * a * c;
+    let is_minimum = a > 0.0 && hessian.determinant() > MIN_DETERMINANT_REL * a * c;
     if !is_minimum {
         return None;
     }
@@ -80,10 +75,10 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
     let value = (h + g.dot(&x) + 0.5 * x.dot(&(curvature * x))) / (1.0 + x2).sqrt();
     let dir = normalise_unscaled(&(n + e1 * x.x + e2 * x.y))?;
     let v = flattest_axis(&curvature);
-    Some(NewtonStep {
+    Some(Prediction {
+        model: Model::Smooth(e1 * v.x + e2 * v.y),
         dir,
         value,
-        flattest: e1 * v.x + e2 * v.y,
     })
 }
 
@@ -171,7 +166,10 @@ mod tests {
             let step = newton_step(&set, &query.upper).unwrap();
             assert!((step.dir - Vec3::x()).norm() < 2e-3, "{:?}", step.dir);
             assert!((step.value - radii.x).abs() < 1e-5, "{}", step.value);
-            assert!(step.flattest.x.abs() < 0.05);
+            let Model::Smooth(flattest) = step.model else {
+                panic!("a sphere");
+            };
+            assert!(flattest.x.abs() < 0.05);
         }
     }
 }
