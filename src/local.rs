@@ -843,6 +843,19 @@ mod tests {
         }
     }
 
+    /// Any direction is a minimum: the fits predict none, and other searches take dozens of support points.
+    #[test]
+    fn concentric_balls_take_few_support_points() {
+        let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
+        let (found, count) = walk(&md, Some(Vec3::zeros()), &Vec3::x(), &SETTINGS);
+        let hit = found.unwrap();
+        assert_eq!(hit.status, Status::Converged);
+        assert!(
+            (hit.depth - 1.5).abs() <= 64.0 * EPSILON && count <= 15,
+            "{count}"
+        );
+    }
+
     /// The face y = 1 and one tilted by 30 degrees share an edge at x = 0: along y the foot is on the edge, and the
     /// support value decreases to 0.87 towards the normal of the other face.
     #[test]
