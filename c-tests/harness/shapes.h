@@ -18,8 +18,7 @@
 
 /* The shapes of every C test, and of the benchmark in Rust through bench/measuring/callbacks.c.
  * No switch over them has a `default:`, so what a new one lacks does not compile: its support
- * point (shape_local_support) and in truth.h the same in double (truth_support), its size
- * (shape_reach) and, where there is one, its exact depth (truth_vertices). */
+ * point (shape_support.h) and its size (shape_reach in truth.h). */
 #pragma GCC diagnostic error "-Wswitch"
 typedef enum {
     SHAPE_SPHERE,    /* p = radius */
@@ -28,10 +27,18 @@ typedef enum {
     SHAPE_CYLINDER,  /* p = radius, half height along z */
     SHAPE_CONE,      /* p = radius, half height; apex at +z, the base at -z */
     SHAPE_ELLIPSOID, /* p = half axes */
-    SHAPE_POLYTOPE   /* the hull of verts: also a polygon, a segment or a point */
+    SHAPE_POLYTOPE,  /* the hull of verts: also a polygon, a segment or a point */
+    /* shapes of the stability tests alone */
+    SHAPE_FRUSTUM,        /* p = radius and height of one end, of the other */
+    SHAPE_SUPERELLIPSOID, /* p = half axes, exponent e: sum |x / p|^e <= 1 */
+    SHAPE_HALF_DISC,      /* p = radius; y > 0, in the plane z = 0 */
+    SHAPE_TEARDROP,       /* p = radius of a ball, height of a tip above its centre */
+    SHAPE_HALF_BALL,      /* p = radius of the lower half of a ball, height of a tip above its flat, or 0 */
+    SHAPE_CUT_BALL,       /* p = radius of a ball, height of the plane that cuts off its cap */
+    SHAPE_SUM             /* parts[0] + parts[1] + a ball; p = its radius */
 } shape_type_t;
 
-enum { SHAPE_TYPES = SHAPE_POLYTOPE + 1 };
+enum { SHAPE_TYPES = SHAPE_POLYTOPE + 1 }; /* the first of them, of programs of users */
 
 /* The support point of a face or an edge that is exactly perpendicular to the direction. */
 enum {
@@ -39,12 +46,13 @@ enum {
     SHAPE_TIE_CENTRE /* the middle of the tied face or edge */
 };
 
-typedef struct {
+typedef struct shape {
     shape_type_t type;
     int tie;
-    ccd_real_t p[3];
+    ccd_real_t p[4];
     int nverts;
-    const ccd_real_t *verts; /* 3 * nverts coordinates in the local frame */
+    const ccd_real_t *verts;   /* 3 * nverts coordinates in the local frame */
+    const struct shape *parts; /* two, in this shape's frame: their poses are not read */
     ccd_real_t centre[3];    /* an inner point in the local frame */
     ccd_real_t pos[3];       /* pose: world = rot * local + pos, rot row-major */
     ccd_real_t rot[9];
@@ -161,36 +169,13 @@ static inline void shape_turn_by(shape_t *s, const double rot[9], double x, doub
 
 /* --- the callbacks ---------------------------------------------------------- */
 
-/* Returns h with the sign of d; at zero by the tie rule. */
-static inline ccd_real_t shape_toward(ccd_real_t d, ccd_real_t h, int tie)
-{
-    if (d > 0)
-        return h;
-    if (d < 0)
-        return -h;
-    return tie == SHAPE_TIE_CENTRE ? (ccd_real_t)0 : (ccd_real_t)copysign((double)h, (double)d);
-}
-
-/* Rim point of a disc of radius r in the xy plane; the zero direction is a tie. */
-static inline void shape_rim(const ccd_real_t d[3], ccd_real_t r, int tie, ccd_real_t v[3])
-{
-    ccd_real_t l = CCD_SQRT(d[0] * d[0] + d[1] * d[1]);
-    if (l > 0) {
-        v[0] = r * (d[0] / l);
-        v[1] = r * (d[1] / l);
-    } else {
-        v[0] = tie == SHAPE_TIE_CENTRE ? (ccd_real_t)0 : (ccd_real_t)copysign((double)r, (double)d[0]);
-        v[1] = 0;
-    }
-}
-
 static inline ccd_real_t shape_vertex_value(const shape_t *s, int i, const ccd_real_t d[3])
 {
     const ccd_real_t *v = s->verts + 3 * i;
     return v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
 }
 
-static inline void shape_polytope_support(shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
+static inline void shape_farthest(const shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
 {
     int i, best = 0, ties;
     ccd_real_t value = shape_vertex_value(s, 0, d);
@@ -218,61 +203,15 @@ static inline void shape_polytope_support(shape_t *s, const ccd_real_t d[3], ccd
     v[2] /= (ccd_real_t)ties;
 }
 
-/* Support point in the local frame for a local direction of any length. */
-static inline void shape_local_support(shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
-{
-    const ccd_real_t *p = s->p;
-    ccd_real_t l, e[3];
-    switch (s->type) {
-    case SHAPE_SPHERE:
-    case SHAPE_CAPSULE:
-        l = CCD_SQRT(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        l = l > 0 ? p[0] / l : (ccd_real_t)0;
-        v[0] = d[0] * l;
-        v[1] = d[1] * l;
-        v[2] = d[2] * l;
-        if (s->type == SHAPE_CAPSULE)
-            v[2] += shape_toward(d[2], p[1], s->tie);
-        break;
-    case SHAPE_BOX:
-        v[0] = shape_toward(d[0], p[0], s->tie);
-        v[1] = shape_toward(d[1], p[1], s->tie);
-        v[2] = shape_toward(d[2], p[2], s->tie);
-        break;
-    case SHAPE_CYLINDER:
-        shape_rim(d, p[0], s->tie, v);
-        v[2] = shape_toward(d[2], p[1], s->tie);
-        break;
-    case SHAPE_CONE: {
-        /* apex against rim: equal along a slant line, then its middle or the apex */
-        shape_rim(d, p[0], s->tie, v);
-        v[2] = -p[1];
-        ccd_real_t gain = 2 * p[1] * d[2] - (v[0] * d[0] + v[1] * d[1]);
-        if (gain > 0 || (gain == 0 && s->tie != SHAPE_TIE_CENTRE)) {
-            v[0] = v[1] = 0;
-            v[2] = p[1];
-        } else if (gain == 0) {
-            v[0] /= 2;
-            v[1] /= 2;
-            v[2] = 0;
-        }
-        break;
-    }
-    case SHAPE_ELLIPSOID:
-        e[0] = p[0] * d[0];
-        e[1] = p[1] * d[1];
-        e[2] = p[2] * d[2];
-        l = CCD_SQRT(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-        l = l > 0 ? 1 / l : (ccd_real_t)0;
-        v[0] = p[0] * (e[0] * l);
-        v[1] = p[1] * (e[1] * l);
-        v[2] = p[2] * (e[2] * l);
-        break;
-    case SHAPE_POLYTOPE:
-        shape_polytope_support(s, d, v);
-        break;
-    }
-}
+#define REAL ccd_real_t
+#define FN(name) shape_##name
+#define ROOT CCD_SQRT
+#define POWER(x, y) (ccd_real_t)pow((double)(x), (double)(y))
+#include "harness/shape_support.h"
+#undef REAL
+#undef FN
+#undef ROOT
+#undef POWER
 
 /* Transforms a local point to the world. */
 static inline void shape_to_world(const shape_t *s, const ccd_real_t v[3], ccd_real_t out[3])

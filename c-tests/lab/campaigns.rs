@@ -7,7 +7,7 @@
 //! | name | what | arguments and their defaults |
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
-//! | `wide` | every call on bodies that are hard for one method or another, judged in 128 bits | pairs a row, row, first pair, seed: 1000 -1 0 1 |
+//! | `wide` | every call on bodies that are hard for one method or another | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
 //! | `positions` | how far `pos` is from the objects (`tests/extension/position.c`) | the share of two million hits: 1 |
@@ -48,10 +48,10 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_default();
     let given: Vec<String> = arguments.collect();
+    let list = |name: &str| [vec![name.to_owned()], given.clone()].concat();
     match name.as_str() {
-        "rates" => show(&program("campaign"), &given, &["2000"]),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        "wide" => show(&programs::alone("wide"), &given, &["1000", "-1", "0", "1"]),
+        "rates" => show(&program("judged"), &list("categories"), &["", "2000"]),
+        "wide" => show(&program("judged"), &list("hard"), &["", "1000", "-1", "0", "1"]),
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
         "positions" => show(&elsewhere("extension/position"), &given, &["1"]),
@@ -60,7 +60,7 @@ fn main() {
         #[cfg(not(feature = "single"))]
         "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
         #[cfg(not(feature = "single"))]
-        "ledger" => show(&program("configurations"), &[], &["--ledger"]),
+        "ledger" => show(&program("judged"), &[], &["ledger"]),
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
             eprintln!(

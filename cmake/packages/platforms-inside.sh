@@ -137,9 +137,7 @@ try examples/pair_table.c
 try examples/world.c
 try tests/extension/warm_states.c
 try tests/extension/pressure.c
-try tests/stability/configurations.c compatible
-try tests/stability/configurations.c proven
-try tests/stability/configurations.c local
+try tests/stability/judged.c configurations
 try tools/record/replay.c contacts.bin
 
 echo "== other targets"

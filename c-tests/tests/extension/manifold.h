@@ -148,26 +148,38 @@ static inline polygon_t polygon_clip(const polygon_t *a, const polygon_t *b)
     return polygon_hull(&rest);
 }
 
+/* Writes the vertices of a box or polytope in the world; returns how many. */
+static inline int manifold_vertices(const shape_t *s, truth_real v[MAX_CORNERS][3])
+{
+    const int is_box = s->type == SHAPE_BOX, count = is_box ? 8 : s->nverts;
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            v[i][k] = s->pos[k];
+            for (int m = 0; m < 3; m++)
+                v[i][k] += (truth_real)s->rot[3 * k + m] * (!is_box ? s->verts[3 * i + m] : i >> m & 1 ? s->p[m] : -s->p[m]);
+        }
+    return count;
+}
+
 /* Computes the face along sign * n. Returns 0 where the
  * library may or may not count a vertex to the face: it is between half the slop and the slop low, or as
  * steeply below the highest vertices as half the slop over the whole object. The slop is at least twice
  * `noise`, the rounding of a height. */
 static inline int manifold_face(const shape_t *s, const frame_t *f, int sign, double slop, double noise, polygon_t *face)
 {
-    static const ccd_real_t origin[3];
-    static truth_core_t c;
+    truth_real v[MAX_CORNERS][3];
     truth_real most = -HUGE_VALL, size = 0;
     double low[MAX_CORNERS];
     polygon_t all, in;
+    const int count = manifold_vertices(s, v);
     int i, clear = 1;
     slop = fmax(slop, 2 * noise);
-    truth_vertices(s, origin, &c);
-    for (i = 0; i < c.nv; i++)
-        most = fmaxl(most, sign * truth_dot(f->n, c.v[i]));
+    for (i = 0; i < count; i++)
+        most = fmaxl(most, sign * truth_dot(f->n, v[i]));
     in.n = 0;
-    for (all.n = i = 0; i < c.nv; i++) {
-        low[i] = (double)(most - sign * truth_dot(f->n, c.v[i]));
-        all.p[all.n++] = manifold_project(f, c.v[i]);
+    for (all.n = i = 0; i < count; i++) {
+        low[i] = (double)(most - sign * truth_dot(f->n, v[i]));
+        all.p[all.n++] = manifold_project(f, v[i]);
         if (low[i] <= slop)
             in.p[in.n++] = all.p[i];
         for (int k = 0; k < i; k++)

@@ -99,7 +99,7 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
     }
     case SHAPE_CONE: return span_intersection(span_quadric(q, e, cone, p1, 0), slab);
     case SHAPE_ELLIPSOID: return span_quadric(q, e, w, 0, 1);
-    case SHAPE_POLYTOPE: break;
+    default: break;
     }
     return none;
 }

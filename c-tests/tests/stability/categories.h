@@ -9,19 +9,23 @@
 
 #include "judge.h"
 
-#include "harness/random.h"
+#include <stddef.h>
 
 /* --- pairs ---------------------------------------------------------------------- */
 
-enum { PAIR_VERTICES = 20 };
+enum { HULL_VERTICES = 20, PAIR_VERTICES = 10000 };
 
-/* Owns its polytopes' vertices: refer to it by pointer, do not copy it. */
+/* Owns the parts of its sums and the vertices of its polytopes: refer to it by pointer, do not copy it. */
 typedef struct {
     shape_t a, b;
-    ccd_real_t verts[2][3 * PAIR_VERTICES];
     truth_t truth;
     double growth[2]; /* of h from the true normal: (h - depth) / angle^2, the least and across it */
+    shape_t parts[2][2];
+    ccd_real_t verts[2][3 * PAIR_VERTICES];
 } pair_t;
+
+/* Clears all but the vertices. */
+static inline void pair_clear(pair_t *p) { memset(p, 0, offsetof(pair_t, verts)); }
 
 static inline shape_t *pair_side(pair_t *p, int k) { return k ? &p->b : &p->a; }
 
@@ -35,10 +39,10 @@ static inline void pair_turn(rng_t *d, shape_t *s)
     shape_turn(s, r);
 }
 
-/* Makes a hull of 4 to PAIR_VERTICES points on an ellipsoid of the given size. */
+/* Makes a hull of 4 to HULL_VERTICES points on an ellipsoid of the given size. */
 static inline shape_t random_hull(rng_t *d, ccd_real_t *verts, double size)
 {
-    int i, k, n = 4 + rng_below(d, PAIR_VERTICES - 3);
+    int i, k, n = 4 + rng_below(d, HULL_VERTICES - 3);
     double axis[3], p[3];
     for (k = 0; k < 3; k++)
         axis[k] = size * rng_uniform(d, .3, 1);
@@ -221,12 +225,14 @@ static inline void make_corners(rng_t *d, pair_t *p)
     double part = rng_log_uniform(d, 1e-5, 1e-3), deep;
     pair_set_both(d, p, kinds, 4);
     do {
-        double u[3], s[3];
+        double u[3];
+        truth_real s[3];
         deep = part * pair_size(&p->a, &p->b);
         rng_unit_vector(d, u);
+        const truth_real n[3] = {u[0], u[1], u[2]};
         shape_move(&p->b, 0, 0, 0);
-        truth_difference_support(&p->a, &p->b, u, s);
-        pair_place(p, 1, s);
+        truth_difference(&p->a, &p->b, n, s);
+        shape_move(&p->b, (double)s[0], (double)s[1], (double)s[2]);
         shape_shift(&p->b, -deep, u);
         part *= 1.01; /* a thin edge may be thinner than that */
     } while (!(truth_depth(&p->a, &p->b).lower > deep / 10));
@@ -328,7 +334,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
     rng_t dd = rng((uint64_t)category + 1, index), *d = &dd;
     double u[3], r[9], x, y, z;
     int k;
-    memset(p, 0, sizeof *p);
+    pair_clear(p);
     switch (category) {
     case CATEGORY_GENERIC:
     case CATEGORY_APART:
@@ -433,6 +439,7 @@ static inline void category_pair(int category, uint64_t index, int tie, pair_t *
         break;
     case CATEGORY_SEGMENT:
         x = rng_below(d, 2) ? rng_uniform(d, .1, 1) : 0;
+        memset(p->verts[0], 0, 6 * sizeof *p->verts[0]);
         p->verts[0][2] = (ccd_real_t)-x;
         p->verts[0][5] = (ccd_real_t)x;
         p->a = shape_polytope(p->verts[0], x > 0 ? 2 : 1);

@@ -36,7 +36,7 @@ typedef struct {
 /* Returns the support points of one call; state: the arguments of a distance. */
 static unsigned long points_in_state(int call, int state, const shape_t *a, const shape_t *b, ccd_warm_t *warm)
 {
-    const entry_t e = {"", 0, call, state};
+    const entry_t e = {"", 0, call, state, 0};
     const ccd_t ccd = counting_query(tol);
     shape_t sa = *a, sb = *b;
     return call_guarded(&e, &sa, &sb, &ccd, warm, NULL, unlimited).calls / 2;
@@ -295,7 +295,7 @@ static int is_in_class(const entry_t *e, int class)
 static size_t deepest_stack(int class)
 {
     static const ccd_vec3_t along = {{1, 0, 0}};
-    static const entry_t refused = {"", 0, CALL_ALONG, STATE_NONE};
+    static const entry_t refused = {"", 0, CALL_ALONG, STATE_NONE, 0};
     static pair_t p;
     size_t deepest = 0;
     int deepest_call = 0;

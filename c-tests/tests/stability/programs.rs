@@ -9,8 +9,7 @@ fn source(name: &str) -> Program {
     Program::c(name).flag("-pedantic").flag("-Werror").source(format!("tests/stability/{name}.c"))
 }
 
-/// Builds a program with this library alone. (`wide` needs 128-bit numbers, which other processors
-/// than x86 lack or have by another name.)
+/// Builds a program with this library alone.
 pub fn alone(name: &str) -> Executable {
     source(name).flag("-DOURS_ALONE").link_ours_static().build()
 }

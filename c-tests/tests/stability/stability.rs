@@ -8,7 +8,7 @@
 mod programs;
 
 use crate::harness::{self, Precision};
-#[cfg(any(not(feature = "single"), target_arch = "x86", target_arch = "x86_64"))]
+#[cfg(not(feature = "single"))]
 use programs::alone;
 use programs::program;
 
@@ -18,20 +18,22 @@ fn truth_agrees_with_itself_and_the_certified_sets() {
     alone("truth").run(programs::truth_arguments("2000", "25"));
 }
 
-/// T01 to U15 and the cases of other projects, on libccd's entry points, cold and warm.
+/// T01 to U15 and the cases of other projects, on every call, cold and warm.
 #[test]
 fn configurations() {
-    program("configurations").run(["compatible"]);
+    program("judged").run(["configurations"]);
 }
 
+/// Random pairs of every category, both tie rules.
 #[test]
-fn configurations_of_the_extension() {
-    program("configurations").run(["proven"]);
+fn categories() {
+    program("judged").run(["categories", "300"]);
 }
 
+/// A sample of every row of bodies that are hard for one method or another.
 #[test]
-fn configurations_of_the_local_query() {
-    program("configurations").run(["local"]);
+fn hard_bodies() {
+    program("judged").run(["hard", &harness::rounds(60)]);
 }
 
 /// Support points and stack of queries. A broken guarantee that is repaired fails this too:
@@ -43,33 +45,6 @@ fn known_costs() {
         Precision::Double => costs.run([""; 0]),
         Precision::Single => costs.run(["U14"]),
     };
-}
-
-/// Judges a sample of every category of pairs, both tie rules.
-fn judge_sample(pairs: &str, group: &str) {
-    program("campaign").run([pairs, "-1", group]);
-}
-
-#[test]
-fn categories() {
-    judge_sample("300", "compatible");
-}
-
-#[test]
-fn categories_of_the_extension() {
-    judge_sample("100", "proven");
-}
-
-#[test]
-fn categories_of_the_local_query() {
-    judge_sample("100", "local");
-}
-
-/// A sample of every row of bodies that are hard for one method or another.
-#[test]
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-fn judged_in_128_bits() {
-    alone("wide").run([harness::rounds(60)]);
 }
 
 /// The callback that is wrong along the normals of its caps. (Single precision has no tilt.)
