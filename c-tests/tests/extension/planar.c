@@ -16,49 +16,43 @@ enum { PAIRS = 300, DIRECTIONS = 720, MAX_SUPPORT_POINTS = 400 };
 
 static double plane[9]; /* a rotation: its last column is the normal of the plane */
 
-/* An ellipse in the plane, with a thickness along its normal. */
+/* An ellipse in the plane, and the prism on it. */
 typedef struct {
-    double at[2], semi[2], yaw, half_thickness;
+    shape_t flat, thick, parts[2];
 } ellipse_t;
 
-static void support_in_plane(const ellipse_t *e, double x, double y, double out[2])
+static void make_ellipse(ellipse_t *e, int is_disc)
 {
-    const double c = cos(e->yaw), s = sin(e->yaw), u = (c * x + s * y) * e->semi[0], v = (c * y - s * x) * e->semi[1];
-    const double length = hypot(u, v), p = length > 0 ? e->semi[0] * u / length : 0, q = length > 0 ? e->semi[1] * v / length : 0;
-    out[0] = e->at[0] + c * p - s * q;
-    out[1] = e->at[1] + s * p + c * q;
+    double yaw[9], rot[9];
+    const double x = uniform(.3, 1), y = is_disc ? x : uniform(.3, 1);
+    e->parts[0] = e->flat = shape_ellipsoid(x, y, 0);
+    e->parts[1] = shape_capsule(0, .5); /* a segment */
+    rotation_about(0, 0, 1, uniform(0, 6.3), yaw);
+    rotation_times(plane, yaw, rot);
+    shape_turn(&e->flat, rot);
 }
 
-static void to_world(double x, double y, double z, ccd_vec3_t *out)
+static void make_prism(ellipse_t *e)
+{
+    e->thick = e->flat;
+    e->thick.type = SHAPE_SUM;
+    e->thick.p[0] = 0;
+    e->thick.parts = e->parts;
+}
+
+/* Writes a direction in the plane. */
+static void direction(double angle, double out[3])
 {
     for (int i = 0; i < 3; i++)
-        out->v[i] = (ccd_real_t)(plane[3 * i] * x + plane[3 * i + 1] * y + plane[3 * i + 2] * z);
-}
-
-static void support(const void *object, const ccd_vec3_t *dir, ccd_vec3_t *out)
-{
-    const ellipse_t *e = (const ellipse_t *)object;
-    double d[3], p[2];
-    for (int k = 0; k < 3; k++)
-        d[k] = plane[k] * (double)dir->v[0] + plane[3 + k] * (double)dir->v[1] + plane[6 + k] * (double)dir->v[2];
-    support_in_plane(e, d[0], d[1], p);
-    to_world(p[0], p[1], d[2] < 0 ? -e->half_thickness : e->half_thickness, out);
-}
-
-static void center(const void *object, ccd_vec3_t *out)
-{
-    const ellipse_t *e = (const ellipse_t *)object;
-    to_world(e->at[0], e->at[1], 0, out);
+        out[i] = plane[3 * i] * cos(angle) + plane[3 * i + 1] * sin(angle);
 }
 
 /* Returns the support value of the difference along an angle in the plane. */
 static double value(const ellipse_t *a, const ellipse_t *b, double angle)
 {
-    const double x = cos(angle), y = sin(angle);
-    double p[2], q[2];
-    support_in_plane(a, x, y, p);
-    support_in_plane(b, -x, -y, q);
-    return (p[0] - q[0]) * x + (p[1] - q[1]) * y;
+    double n[3];
+    direction(angle, n);
+    return truth_support_value(&a->flat, &b->flat, n);
 }
 
 /* Returns the least support value over all directions in the plane. */
@@ -92,24 +86,25 @@ static void check(int is_wrong, int kind, const char *what, double tol, double t
 }
 
 /* Makes the calls for one pair at one tolerance. */
-static void check_pair(const ellipse_t *flat_a, const ellipse_t *flat_b, double tol, int has_centers, double truth)
+static void check_pair(const ellipse_t *a, const ellipse_t *b, double tol, int has_centers, double truth)
 {
-    ellipse_t a = *flat_a, b = *flat_b;
     ccd_penetration_t out;
     ccd_vec3_t normal, along;
-    ccd_t ccd;
-    CCD_INIT(&ccd);
-    ccd.support1 = ccd.support2 = support;
-    ccd.center1 = ccd.center2 = has_centers ? center : NULL;
+    ccd_t ccd = shape_query();
+    ccd.center1 = ccd.center2 = has_centers ? shape_center : NULL;
     ccd.mpr_tolerance = (ccd_real_t)tol;
-    to_world(0, 0, 1, &normal);
-    const double noise = 64 * real_eps(), angle = uniform(0, 6.3);
-    to_world(cos(angle), sin(angle), 0, &along);
+    const double noise = 64 * real_eps();
+    double u[3];
+    direction(uniform(0, 6.3), u);
+    for (int i = 0; i < 3; i++) {
+        normal.v[i] = (ccd_real_t)plane[3 * i + 2];
+        along.v[i] = (ccd_real_t)u[i];
+    }
     if (fabs(truth) <= noise)
         return;
 
     memset(&out, 0, sizeof out);
-    int code = OURS(ccdPenetrationPlanar)(&a, &b, &ccd, &normal, NULL, CCD_WANT_POINTS, &out);
+    int code = OURS(ccdPenetrationPlanar)(&a->flat, &b->flat, &ccd, &normal, NULL, CCD_WANT_POINTS, &out);
     count_support_points(code, &out);
     check(truth > 0 && code != CCD_HIT && code != CCD_LIMIT, MISSED, "planar: missed", tol, truth, &out);
     check(truth < 0 && code != CCD_MISS, FALSE_HIT, "planar: a false hit", tol, truth, &out);
@@ -121,19 +116,19 @@ static void check_pair(const ellipse_t *flat_a, const ellipse_t *flat_b, double 
             y += plane[3 * i + 1] * (double)out.dir.v[i];
         }
         for (int i = -20; i <= 20; i++)
-            lowest = fmin(lowest, value(&a, &b, atan2(y, x) + i * 5e-4));
-        check(!(fabs((double)out.depth - value(&a, &b, atan2(y, x))) <= noise), NO_MINIMUM, "planar: no support value", tol, truth, &out);
+            lowest = fmin(lowest, value(a, b, atan2(y, x) + i * 5e-4));
+        check(!(fabs((double)out.depth - value(a, b, atan2(y, x))) <= noise), NO_MINIMUM, "planar: no support value", tol, truth, &out);
         check((double)out.depth > lowest + 10 * tol + noise, NO_MINIMUM, "planar: no local minimum", tol, truth, &out);
     }
 
     /* Flat, they touch; thick, they overlap exactly where the ellipses do. */
     for (int thick = 0; thick < 2; thick++) {
-        a.half_thickness = b.half_thickness = .5 * thick;
-        code = OURS(ccdPenetrationAlong)(&a, &b, &ccd, &along, NULL, 0, &out);
+        const shape_t *const s1 = thick ? &a->thick : &a->flat, *const s2 = thick ? &b->thick : &b->flat;
+        code = OURS(ccdPenetrationAlong)(s1, s2, &ccd, &along, NULL, 0, &out);
         count_support_points(code, &out);
         check(thick && truth > 0 && code != CCD_HIT && code != CCD_LIMIT, MISSED, "along: missed", tol, truth, &out);
         check((!thick || truth < 0) && code != CCD_MISS, FALSE_HIT, "along: a false hit", tol, truth, &out);
-        code = OURS(ccdPenetrationIncremental)(&a, &b, &ccd, NULL, 0, &out);
+        code = OURS(ccdPenetrationIncremental)(s1, s2, &ccd, NULL, 0, &out);
         check(thick && truth > 0 && code != CCD_HIT && code != CCD_LIMIT, MISSED, "incremental: missed", tol, truth, &out);
         check((!thick || truth < 0) && code != CCD_MISS, FALSE_HIT, "incremental: a false hit", tol, truth, &out);
         count_support_points(code, &out);
@@ -162,19 +157,20 @@ int main(int argc, char **argv)
     const int is_single = sizeof(ccd_real_t) == sizeof(float);
     for (int n = 0; n < pairs; n++) {
         ellipse_t a, b;
-        const double distance = uniform(0, 1) * (n % 5 ? 1 : 2.5), angle = uniform(0, 6.3);
+        const double distance = uniform(0, 1) * (n % 5 ? 1 : 2.5), far_off = n % 3 ? 0 : uniform(-5, 5);
+        double u[3], x[3];
         rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), plane);
-        memset(&a, 0, sizeof a);
-        memset(&b, 0, sizeof b);
-        for (int k = 0; k < 2; k++) {
-            a.semi[k] = k && n % 2 ? a.semi[0] : uniform(.3, 1);
-            b.semi[k] = k && n % 2 ? b.semi[0] : uniform(.3, 1);
-        }
-        a.yaw = uniform(0, 6.3);
-        b.yaw = uniform(0, 6.3);
-        a.at[0] = n % 3 ? 0 : uniform(-5, 5);
-        b.at[0] = a.at[0] + distance * cos(angle);
-        b.at[1] = distance * sin(angle);
+        make_ellipse(&a, n % 2);
+        make_ellipse(&b, n % 2);
+        direction(0, x);
+        direction(uniform(0, 6.3), u);
+        shape_shift(&a.flat, far_off, x);
+        b.flat.pos[0] = a.flat.pos[0];
+        b.flat.pos[1] = a.flat.pos[1];
+        b.flat.pos[2] = a.flat.pos[2];
+        shape_shift(&b.flat, distance, u);
+        make_prism(&a);
+        make_prism(&b);
         const double truth = least_value(&a, &b);
         for (int exponent = is_single ? 3 : 5; exponent <= (is_single ? 5 : 9); exponent++)
             for (int has_centers = 0; has_centers < 2; has_centers++)
