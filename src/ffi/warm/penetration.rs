@@ -92,6 +92,7 @@ impl ccd_penetration_t {
 ///
 /// # Safety
 /// As [`run_query`].
+#[inline(always)]
 pub(in crate::ffi) unsafe fn fill(
     args: QueryArgs,
     kind: QueryKind,
