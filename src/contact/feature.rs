@@ -32,8 +32,8 @@ use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
 
-/// Number of most recent known vertices used.
-pub const MAX_KNOWN: usize = 16;
+/// Number of most recent known vertices used. With 16 a hit takes 0.3 % fewer support points and 1 % more instructions.
+pub const MAX_KNOWN: usize = 8;
 /// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
 /// a drop of 1.6 depths at that tilt (R T²/2), and all corners are found of a face whose drop grows by a depth
 /// over its width. Measured: with the factor divided by 1.2 a corner of a leaning box is missed; multiplied by
@@ -63,9 +63,9 @@ const MIN_CURVED_DROP: f64 = 0.3;
 const MAX_CURVED_DROP: f64 = 0.9;
 /// Largest length of the sum of two opposite vertices that count as symmetric, relative to the extent.
 const SYMMETRY_REL_TOL: f64 = 0.004;
-/// A feature no larger than this, relative to the extent, counts as a point: the center of pressure is within a
-/// quarter of that size. No corner is searched beyond a shorter side.
-const POINT_REL: f64 = 0.016;
+/// Least length of a side beyond which a corner is searched, relative to the extent. Without it the root mean square error
+/// grows by 2.5 %.
+const MIN_SIDE_REL: f64 = 0.016;
 /// Distance, relative to the extent, below which two vertices are the same.
 const SAME_REL: f64 = 1e-7;
 /// Largest drop, in depths, that counts as in the support plane: an error of a third of this fraction of the half
@@ -285,8 +285,8 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         SAME_REL * self.extent
     }
 
-    /// Finds the feature of an object and makes its fan. Returns false if the deepest point is the center of pressure:
-    /// the feature is a point.
+    /// Finds the feature of an object and makes its fan. Returns false if the fan has no area: the deepest point is the
+    /// center of pressure.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -299,16 +299,8 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         {
             self.find_polygon(&mut evaluated, false, fan)?;
         }
-        let (mut least, mut is_point) = (1.0, true);
-        let size2 = POINT_REL * POINT_REL * self.extent * self.extent;
-        for v in fan.vertices.iter().take(fan.len) {
-            let drop = larger(v.z, 1.0);
-            is_point &= v.xy().norm_squared() <= size2 * drop * drop;
-            least = lesser(v.z, least);
-        }
-        if is_point {
-            return Ok(false);
-        }
+        let vertices = fan.vertices.iter().take(fan.len);
+        let least = vertices.fold(1.0, |least, v| lesser(v.z, least));
         for v in fan.vertices.iter_mut().take(fan.len) {
             v.z -= COMMON_DROP_FACTOR * least;
         }
@@ -334,7 +326,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         for v in &evaluated.extremes(self.depth_over_tilt) {
             polygon.push_distinct(v, same);
         }
-        let least_side = POINT_REL * self.extent;
+        let least_side = MIN_SIDE_REL * self.extent;
         // The number of directions done around a corner or an edge, and that of queries that returned known vertices
         // and new ones.
         let (mut step, mut hits, mut misses) = (0, 0, 0);
@@ -489,8 +481,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             && self.tilt < MAX_TILT_TAN
             && is_round(&a, aside_a)
             && is_round(&c, aside_c)
-            && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c
-            && self.is_below_known_planes(evaluated.object, [&b, &d], tolerance);
+            && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c;
         let mut between = None;
         if !is_mirrored {
             b = self.query(evaluated, out[1])?;
@@ -512,21 +503,6 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             }
         }
         Ok(true)
-    }
-
-    /// Returns whether two points of an object are at most `tolerance` beyond its known support planes.
-    #[inline(always)]
-    fn is_below_known_planes(&self, object: usize, points: [&Vec3; 2], tolerance: f64) -> bool {
-        let depth = self.tilt * self.depth_over_tilt;
-        let mut is_below = true;
-        for pair in self.known {
-            let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
-            for p in points {
-                let beyond = tilt.dot(&offset(&v, p)) - (p.z - v.z) * depth;
-                is_below &= beyond <= tolerance * self.tilt;
-            }
-        }
-        is_below
     }
 
     /// Returns the points midway between the four vertices on the rim of a disc; None if the vertices are not on
@@ -573,21 +549,22 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     }
 }
 
-/// Returns for both objects whether different directions returned the same vertex.
+/// Returns for both objects whether two directions that differ by more than `turned` returned the same vertex, within
+/// `same`.
 #[inline(always)]
 fn have_repeated_vertex(known: &[KnownPair], same: f64, turned: f64) -> [bool; 2] {
-    let mut repeated = [0_u64; 2];
+    // The greatest excess over the limits in place of comparisons, for both objects in one operation.
+    let mut excess = [0.0; 2];
     for (i, v) in known.iter().enumerate() {
         for w in known.iter().take(i) {
-            let turn = larger((v.tilt[0] - w.tilt[0]).abs(), (v.tilt[1] - w.tilt[1]).abs());
-            let limit = if turn > turned { same } else { -1.0 };
-            for (k, repeated) in repeated.iter_mut().enumerate() {
-                let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
-                *repeated |= u64::from(distance <= limit) & u64::from(v.drop[k] <= 1.0);
+            let turn = (v.tilt[0] - w.tilt[0]).abs() + (v.tilt[1] - w.tilt[1]).abs() - turned;
+            for k in 0..2 {
+                let distance = (v.x[k] - w.x[k]).abs() + (v.y[k] - w.y[k]).abs();
+                excess[k] = larger(lesser(turn, same - distance), excess[k]);
             }
         }
     }
-    repeated.map(|n| n > 0)
+    excess.map(|excess| excess > 0.0)
 }
 
 /// Returns a vertex moved along unit `out`.
@@ -762,12 +739,11 @@ impl Polygon {
         self.is_closed[last % MAX_CORNERS] = false;
     }
 
-    /// Returns whether four corners are a parallelogram, in space too.
+    /// Returns whether four corners are a parallelogram.
     #[inline(always)]
     fn is_parallelogram(&self, tolerance: f64) -> bool {
         let [a, b, c, d, ..] = &self.corners;
-        let gap = a + c - b - d;
-        gap.xy().norm_squared() < tolerance * tolerance && gap.z.abs() < SAME_DROP_TOL
+        (a + c - b - d).xy().norm_squared() < tolerance * tolerance
     }
 
     /// Makes the fan of the corners, each moved outwards; of an edge, its ends also to both sides.
