@@ -41,7 +41,7 @@ use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
 use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, SupportQuery};
+use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::{WarmKind, WarmStart};
 use crate::portal::{discover, refine};
@@ -78,13 +78,16 @@ enum PortalEnd {
     Open(Option<[Vertex; 3]>),
 }
 
-/// The bounds and the witness points of the best polytope or portal so far.
+/// The bounds and the witness points of the polytope or portal with the least gap so far.
 #[derive(Clone, Copy)]
 struct Proof {
-    /// The upper bound when the witness points were computed, metres; infinite before the first result.
+    /// The upper bound, metres; infinite before the first result.
     upper: f64,
+    /// Its direction, unit.
+    dir: Vec3,
     /// The lower bound of the depth, metres; 0 if none is proven.
     lower: f64,
+    /// The witness points of the upper bound.
     points: [Vec3; 2],
 }
 
@@ -139,15 +142,17 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         is_inconsistent: false,
         proof: Proof {
             upper: f64::INFINITY,
+            dir: Vec3::zeros(),
             lower: 0.0,
             points: [Vec3::zeros(); 2],
         },
     };
     let mut status = solver.run(set, &mut arena)?;
-    let upper = &solver.query.upper;
-    let (dir, depth) = (upper.dir, upper.depth);
     let Proof {
-        mut lower, points, ..
+        upper: depth,
+        dir,
+        mut lower,
+        points,
     } = solver.proof;
     // A support plane excludes the center from D: the polytope may contain an origin that is outside.
     if request.center.is_some() && solver.query.interior.is_none() {
@@ -365,9 +370,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 return Ok(status);
             }
         }
-        let upper = &self.query.upper;
-        if upper.depth < self.proof.upper {
-            self.proof.points = [upper.point.v1, upper.point.v2];
+        if self.proof.upper == f64::INFINITY {
+            let SupportPlane { dir, depth, point } = self.query.upper;
+            self.proof = Proof {
+                upper: depth,
+                dir,
+                lower: 0.0,
+                points: [point.v1, point.v2],
+            };
         }
         Ok(Status::Rounding)
     }
@@ -498,7 +508,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
         let upper = self.query.upper;
         let gap = gap_limit.allowed(&self.query.scale, upper.depth);
-        if upper.depth < self.proof.upper || lower > self.proof.lower {
+        if upper.depth - lower < self.proof.upper - self.proof.lower {
             let face = || exit_face(&upper, &interior, set, surface, closest.face, gap);
             self.store_proof(set, face, lower, gap);
         }
@@ -507,7 +517,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let allowed = larger(gap, larger(gap_limit.tolerance, tolerance) + rounding);
         Ok(match end {
             _ if !is_inside => Status::Rounding,
-            _ if upper.depth - self.proof.lower <= allowed => Status::Converged,
+            _ if upper.depth - lower <= allowed => Status::Converged,
             Status::Converged => Status::Rounding,
             _ => end,
         })
@@ -525,11 +535,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     ) {
         self.is_inconsistent = self.query.is_inconsistent(set);
         let upper = &self.query.upper;
-        self.proof.upper = upper.depth;
-        self.proof.lower = larger(lower, self.proof.lower);
-        if self.request.wants_points {
-            self.proof.points = witness_points(upper, &self.interior, set, &face(), gap);
-        }
+        let points = if self.request.wants_points {
+            witness_points(upper, &self.interior, set, &face(), gap)
+        } else {
+            [Vec3::zeros(); 2]
+        };
+        self.proof = Proof {
+            upper: upper.depth,
+            dir: upper.dir,
+            lower,
+            points,
+        };
     }
 }
 
