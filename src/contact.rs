@@ -6,14 +6,19 @@
 //! | file | contents |
 //! |---|---|
 //! | [`frame`] | the frame of a contact |
-//! | [`feature`] | the vertices of an object around its deepest point |
+//! | [`feature`] | the vertices of an object around its deepest point: [`polygon_search`], [`curved`], in a [`fan`] |
+//! | [`tuning`] | the constants of these |
 //! | [`center_of_pressure`] | the contact position |
 //! | [`face`] | the face of an object in a contact |
 //! | [`manifold`], [`manifold_cache`] | the contact points of two faces, and what is kept of them |
 
 pub mod center_of_pressure;
+pub mod curved;
 pub mod face;
+pub mod fan;
 pub mod feature;
 pub mod frame;
 pub mod manifold;
 pub mod manifold_cache;
+pub mod polygon_search;
+pub mod tuning;

@@ -45,8 +45,10 @@
 //! depth is 1 % of it, 2 to 3 % at 3 %, 6 % at 10 %, and 12 to 18 % at 30 %. For comparison, the middle of the
 //! witness points: 4 to 9, 8 to 17, 15 to 28 and 26 to 41 % (`c-tests/tests/extension/pressure.c`).
 
-use crate::contact::feature::{Fan, FeatureQuery, IN_PLANE_DROP_TOL, KnownPair, MAX_KNOWN, area2};
+use crate::contact::fan::{Fan, area2};
+use crate::contact::feature::{FeatureQuery, KnownPair, MAX_KNOWN};
 use crate::contact::frame::ContactFrame;
+use crate::contact::tuning::IN_PLANE_DROP_TOL;
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Finds points of a curved surface around the deepest one.
+//!
+//! Two opposite directions are evaluated, 45° from that to the center. The mirror images of both vertices in the plane of
+//! the normal and the center are the other two: right for bodies of revolution. If they cannot be, these directions are
+//! evaluated too. Of a disc the points between them on its rim are computed.
+
+use crate::contact::fan::{Fan, moved};
+use crate::contact::feature::{FeatureQuery, ObjectVertices, four_directions};
+use crate::contact::tuning::{
+    IN_PLANE_DROP_TOL, MAX_CURVED_ASIDE, MAX_CURVED_DROP, MAX_TILT_TAN, MIN_CURVED_DROP,
+    MIN_CURVED_KNOWN, RIM_REL_TOL, SAME_DROP_TOL, SYMMETRY_REL_TOL,
+};
+use crate::geometry::polygon::{Vec2, offset};
+use crate::math::Vec3;
+use crate::minkowski::support::{Fault, SupportMap};
+
+/// The coordinate of a diagonal unit vector.
+const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
+impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
+    /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: a
+    /// query returns a known vertex, or four points are in a plane with the deepest one and not of a disc.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(never)]
+    pub fn find_curved(
+        &self,
+        evaluated: &mut ObjectVertices,
+        fan: &mut Fan,
+    ) -> Result<bool, Fault> {
+        let center = self.centers[evaluated.object % 2];
+        let distance = center.norm();
+        let has_axis = distance > self.same_distance();
+        let axis = if has_axis {
+            center / distance
+        } else {
+            Vec2::x()
+        };
+        let out = four_directions(Vec2::new(axis.x - axis.y, axis.x + axis.y) * H);
+        let a = self.query(evaluated, out[0])?;
+        let c = self.query(evaluated, out[2])?;
+        if evaluated.has_repeated(2, self.same_distance()) {
+            return Ok(false);
+        }
+        let tolerance = SYMMETRY_REL_TOL * self.extent;
+        fan.is_symmetric = (a + c).xy().norm_squared() < tolerance * tolerance
+            && (a.z - c.z).abs() < SAME_DROP_TOL;
+        let mirror = |v: &Vec3| {
+            let along = 2.0 * axis.dot(&v.xy());
+            Vec3::new(along * axis.x - v.x, along * axis.y - v.y, v.z)
+        };
+        let (mut b, mut d) = (mirror(&c), mirror(&a));
+        // The distance of each from the mirror plane, on the side to which its direction is tilted.
+        let [aside_a, aside_c] = [axis.perp(&a.xy()), -axis.perp(&c.xy())];
+        let is_round = |v: &Vec3, aside: f64| {
+            let lost = v.z * self.depth_over_tilt;
+            aside >= -self.vertex_offset
+                && aside <= MAX_CURVED_ASIDE * self.tilt * self.extent
+                && lost >= MIN_CURVED_DROP * aside
+        };
+        let may_be_mirrored = fan.is_symmetric
+            || self.has_centers && has_axis && self.known.len() >= MIN_CURVED_KNOWN;
+        let is_mirrored = may_be_mirrored
+            && self.tilt < MAX_TILT_TAN
+            && is_round(&a, aside_a)
+            && is_round(&c, aside_c)
+            && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c
+            && self.is_below_known_planes(evaluated.object, [&b, &d], tolerance);
+        let mut between = None;
+        if !is_mirrored {
+            b = self.query(evaluated, out[1])?;
+            d = self.query(evaluated, out[3])?;
+            between = self.fit_disc_rim([&a, &b, &c, &d], &out);
+            let normal = (b - a).cross(&(c - a));
+            let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
+            let is_face = between.is_none() && drop_at_deepest < IN_PLANE_DROP_TOL;
+            if is_face || evaluated.has_repeated(2, self.same_distance()) {
+                return Ok(false);
+            }
+        }
+        fan.len = 0;
+        for (k, v) in [a, b, c, d].iter().enumerate() {
+            fan.push(moved(v, out[k], self.vertex_offset));
+            if let Some(between) = &between {
+                let out = (out[k] + out[(k + 1) % 4]) * H;
+                fan.push(moved(&between[k], out, self.vertex_offset));
+            }
+        }
+        Ok(true)
+    }
+
+    /// Returns whether two points of an object are at most `tolerance` beyond its known support planes. Measured: without
+    /// this test positions are off the object in 4 of 1,200 hits of rims in single precision (category of meeting rims).
+    #[inline(always)]
+    fn is_below_known_planes(&self, object: usize, points: [&Vec3; 2], tolerance: f64) -> bool {
+        let depth = self.tilt * self.depth_over_tilt;
+        let mut is_below = true;
+        for pair in self.known {
+            let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
+            for p in points {
+                let beyond = tilt.dot(&offset(&v, p)) - (p.z - v.z) * depth;
+                is_below &= beyond <= tolerance * self.tilt;
+            }
+        }
+        is_below
+    }
+
+    /// Returns the points midway between the four vertices on the rim of a disc; None if the vertices are not on
+    /// such a rim. A disc returns its center plus the radius times the direction in its plane. (A square whose
+    /// corners lie along the four tilt directions within 1e-4 rad is mistaken for a disc.)
+    #[inline(always)]
+    fn fit_disc_rim(&self, [a, b, c, d]: [&Vec3; 4], out: &[Vec2; 4]) -> Option<[Vec3; 4]> {
+        let normal = (b - a).cross(&(c - a));
+        let gradient = normal.xy() / -normal.z;
+        let lean = gradient * (self.tilt * self.depth_over_tilt);
+        let scale = 1.0 / (1.0 + lean.norm_squared());
+        // The direction in the leaning disc's plane that is farthest along the tilted normal: that normal without
+        // its part along the axis of the disc.
+        let outwards = |out: Vec2| {
+            let tilt = out * self.tilt - lean;
+            let down = lean.dot(&tilt) * scale;
+            let in_plane = tilt - lean * down;
+            in_plane / (in_plane.norm_squared() + down * down).sqrt()
+        };
+        let [first, second, third, fourth] = out.map(outwards);
+        let (span, chord) = (first - third, offset(c, a));
+        let span2 = span.norm_squared();
+        // For corners of other faces the chord mostly has another direction.
+        let cross = span.perp(&chord);
+        if !(cross * cross <= RIM_REL_TOL * span2 * chord.norm_squared()) {
+            return None;
+        }
+        let radius = span.dot(&chord) / span2;
+        let on_rim = |out: Vec2| {
+            let from_a = (out - first) * radius;
+            a + Vec3::new(from_a.x, from_a.y, gradient.dot(&from_a))
+        };
+        let is_there = |out, found: &Vec3| {
+            let error = on_rim(out) - found;
+            let tolerance = RIM_REL_TOL * radius;
+            error.xy().norm_squared() <= tolerance * tolerance && error.z.abs() <= SAME_DROP_TOL
+        };
+        // False for NaN.
+        let is_rim = radius > 2.0 * self.vertex_offset
+            && is_there(second, b)
+            && is_there(third, c)
+            && is_there(fourth, d);
+        is_rim.then(|| [0, 1, 2, 3].map(|k| on_rim(outwards((out[k % 4] + out[(k + 1) % 4]) * H))))
+    }
+}

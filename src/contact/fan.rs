@@ -1,0 +1,203 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The vertices of a feature, in order around the deepest point.
+
+use crate::contact::polygon_search::MAX_CORNERS;
+use crate::contact::tuning::SAME_DROP_TOL;
+use crate::geometry::polygon::Vec2;
+use crate::math::{Vec3, ZERO};
+
+/// Returns twice the area of the triangle of the deepest point and two vertices, positive if counterclockwise.
+#[inline(always)]
+pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// Returns a vertex moved along unit `out`.
+#[inline(always)]
+pub fn moved(v: &Vec3, out: Vec2, distance: f64) -> Vec3 {
+    Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z)
+}
+
+/// The vertices of a feature, counterclockwise around the deepest point.
+#[derive(Clone, Copy, Debug)]
+pub struct Fan {
+    /// `vertices[len]` repeats the first one.
+    pub vertices: [Vec3; Fan::CAPACITY],
+    pub len: usize,
+    /// True if opposite vertices are symmetric about the deepest point.
+    pub is_symmetric: bool,
+}
+
+impl Fan {
+    /// Largest number of vertices: eight of a disc or a polygon, two that enclose the deepest point, and the
+    /// repeated first one.
+    pub const CAPACITY: usize = MAX_CORNERS + 3;
+    /// The fan without vertices.
+    pub const EMPTY: Self = Self {
+        vertices: [ZERO; Self::CAPACITY],
+        len: 0,
+        is_symmetric: false,
+    };
+
+    /// Appends a vertex; a full fan ignores it.
+    #[inline(always)]
+    pub fn push(&mut self, v: Vec3) {
+        if self.len < Self::CAPACITY - 1 {
+            self.vertices[self.len] = v;
+            self.len += 1;
+        }
+    }
+
+    /// Repeats the first vertex.
+    #[inline(always)]
+    pub fn close(&mut self) {
+        self.vertices[self.len.min(Self::CAPACITY - 1)] = self.vertices[0];
+    }
+
+    /// Returns twice the area of the triangle of the deepest point, vertex `i` and the next one.
+    #[inline(always)]
+    pub fn area(&self, i: usize) -> f64 {
+        let i = i.min(Self::CAPACITY - 2);
+        area2(&self.vertices[i], &self.vertices[i + 1])
+    }
+
+    /// Returns whether the vertices are once around the deepest point, counterclockwise.
+    #[inline(always)]
+    pub fn contains_deepest_point(&self) -> bool {
+        let mut turns = 0;
+        let mut is_inside = true;
+        for i in 0..self.len.min(Self::CAPACITY - 1) {
+            is_inside &= self.area(i) > 0.0;
+            turns += usize::from(self.vertices[i].y < 0.0 && self.vertices[i + 1].y >= 0.0);
+        }
+        is_inside && turns == 1
+    }
+
+    /// Orders the vertices around the deepest point and, if it is outside, adds a vertex at `distance` behind it. Returns
+    /// false if there is no area.
+    ///
+    /// The vertices are mostly in order, but not always around an edge: the vertex along a direction may be high, in
+    /// place of one farther along it and lower.
+    #[cold]
+    #[inline(never)]
+    pub fn enclose_deepest_point(&mut self, distance: f64) -> bool {
+        let is_before = |a: &Vec3, b: &Vec3| {
+            let half = |v: &Vec3| u8::from(v.y < 0.0 || v.y == 0.0 && v.x < 0.0);
+            half(a) < half(b) || half(a) == half(b) && area2(a, b) > 0.0
+        };
+        let n = self.len.min(Self::CAPACITY - 2);
+        // Insertion sort.
+        for end in 1..n {
+            let mut i = end;
+            while i > 0 && i < Self::CAPACITY {
+                if !is_before(&self.vertices[i], &self.vertices[i - 1]) {
+                    break;
+                }
+                (self.vertices[i], self.vertices[i - 1]) = (self.vertices[i - 1], self.vertices[i]);
+                i -= 1;
+            }
+        }
+        self.len = n;
+        self.close();
+        let is_gap = |i: &usize| {
+            let [p, q] = self.side(*i);
+            let area = area2(p, q);
+            area < 0.0 || area == 0.0 && p.xy().dot(&q.xy()) <= 0.0
+        };
+        if let Some(gap) = (0..n).find(is_gap) {
+            let [p, q] = self.side(gap);
+            // Opposite to the bisector of the directions to p and q, also if both are on one side.
+            let [a, b] = [p, q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
+            let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
+            let scale = distance / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
+            let mut behind = Vec3::new(x * scale, y * scale, 0.0);
+            let places = self.vertices.iter_mut().skip(gap + 1);
+            places.for_each(|place| core::mem::swap(place, &mut behind));
+            self.len = n + 1;
+            self.close();
+        }
+        let mut i = 0;
+        while i < self.len && self.len > 2 {
+            if self.is_dent(i) {
+                for k in 1..Self::CAPACITY {
+                    if k > i {
+                        self.vertices[k - 1] = self.vertices[k];
+                    }
+                }
+                self.len -= 1;
+                self.close();
+                i = 0;
+            } else {
+                i += 1;
+            }
+        }
+        self.len > 2
+    }
+
+    /// Returns the ends of side `i`, below the length.
+    #[inline(always)]
+    fn side(&self, i: usize) -> [&Vec3; 2] {
+        let i = i.min(Self::CAPACITY - 2);
+        [&self.vertices[i], &self.vertices[i + 1]]
+    }
+
+    /// Returns whether a vertex is nearer than the line of its neighbours, and not higher than the plane of these and the
+    /// deepest point. (The object is convex, so the surface extends to that line.)
+    fn is_dent(&self, i: usize) -> bool {
+        let [p, _] = self.side(if i > 0 { i - 1 } else { self.len - 1 });
+        let [v, q] = self.side(i);
+        let per_area = 1.0 / area2(p, q);
+        let (weight_p, weight_q) = (area2(v, q) * per_area, area2(p, v) * per_area);
+        per_area > 0.0
+            && weight_p + weight_q < 1.0
+            && weight_p * p.z + weight_q * q.z < v.z + SAME_DROP_TOL
+    }
+
+    /// Mirrors the fan through the deepest point.
+    #[inline(always)]
+    pub fn mirror(&mut self) {
+        for v in self.vertices.iter_mut().take(self.len + 1) {
+            (v.x, v.y) = (-v.x, -v.y);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::Random;
+
+    /// Tests fans from a triangle to a sliver that points at the deepest point, and one in the wrong order: all areas
+    /// are positive once the deepest point is enclosed. A point has none.
+    #[test]
+    fn enclosed_fan_contains_the_deepest_point() {
+        let mut r = Random::new(1);
+        for round in 0..1000 {
+            let width = 10.0_f64.powf(-r.within(0.0, 4.0));
+            let mut corners = vec![
+                (2.0, width),
+                (1.0, -width),
+                (3.0, -width * r.within(-0.4, 0.9)),
+            ];
+            if round % 2 == 0 {
+                corners.extend([(-0.25, -0.061), (-0.05, -0.3)]);
+            }
+            let (sin, cos) = r.within(0.0, core::f64::consts::TAU).sin_cos();
+            let mut fan = Fan::EMPTY;
+            for (x, y) in corners {
+                let (x, y) = (x * cos - y * sin, x * sin + y * cos);
+                fan.push(Vec3::new(x, y, 0.0));
+            }
+            fan.close();
+            assert!(!fan.contains_deepest_point());
+            assert!(fan.enclose_deepest_point(1e-3));
+            assert!(fan.contains_deepest_point(), "{round} {fan:?}");
+        }
+        let mut point = Fan::EMPTY;
+        point.push(Vec3::x());
+        point.close();
+        assert!(!point.enclose_deepest_point(1e-3));
+    }
+}

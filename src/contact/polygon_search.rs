@@ -1,0 +1,262 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! Finds the polygon of a polytope in a contact: the corners of a face, the ends of an edge, or a corner.
+//!
+//! It begins with the evaluated vertices of greatest height along ±e1 and ±e2. Beyond each side the direction is evaluated
+//! along which both of its ends have the same height, until no side has a corner beyond it; so the polygon is the same
+//! whatever was known. If four corners are a parallelogram and its longest side has no corner beyond it, neither has any
+//! other. A corner and an edge are known if evaluated directions around them returned them.
+
+use crate::contact::fan::{Fan, moved};
+use crate::contact::feature::{FeatureQuery, ObjectVertices, four_directions, is_within};
+use crate::contact::tuning::{MIN_COVER, MIN_SIDE_REL, SYMMETRY_REL_TOL};
+use crate::geometry::polygon::{Vec2, offset};
+use crate::math::{Vec3, larger, lesser};
+use crate::minkowski::support::{Fault, SupportMap};
+
+/// Largest number of corners of a polygon.
+pub const MAX_CORNERS: usize = 10;
+/// Largest number of steps of its search: each corner is found once and each side closed once.
+const MAX_STEPS: usize = 2 * MAX_CORNERS + 4;
+impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
+    /// Finds the polygon of a polytope and makes its fan. Returns false if `may_fail` and the first two queries return
+    /// new vertices: two directions in a plane with a disc's axis return the same rim point, so a vertex returned twice
+    /// does not prove a polytope.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[inline(never)]
+    pub fn find_polygon(
+        &self,
+        evaluated: &mut ObjectVertices,
+        may_fail: bool,
+        fan: &mut Fan,
+    ) -> Result<bool, Fault> {
+        let same = self.same_distance();
+        let mut polygon = Polygon::default();
+        for v in &evaluated.extremes(self.depth_over_tilt) {
+            polygon.push_distinct(v, same);
+        }
+        let least_side = MIN_SIDE_REL * self.extent;
+        // The number of directions done around a corner or an edge, and that of queries that returned known vertices
+        // and new ones.
+        let (mut step, mut hits, mut misses) = (0, 0, 0);
+        for _ in 0..MAX_STEPS {
+            let n = polygon.len;
+            let Some((side, out)) = self.next_direction(&polygon, step, least_side) else {
+                break;
+            };
+            let ends = polygon.side(side);
+            let [p, q] = ends.map(|end| self.height(end, &out));
+            let least = larger(p, q) + 2.0 * self.vertex_offset;
+            let mut found = evaluated.highest(out, self.depth_over_tilt, least);
+            let is_side = n > 2 || n == 2 && step < 2;
+            let is_covered =
+                n < 3 && found.is_none() && self.is_covered(evaluated.object, out, ends, is_side);
+            if found.is_none() && !is_covered {
+                let v = self.query(evaluated, out)?;
+                if self.height(&v, &out) > least {
+                    (found, misses) = (Some(v), misses + 1);
+                } else {
+                    hits += 1;
+                }
+                if may_fail && n < 3 && hits == 0 && misses == 2 {
+                    return Ok(false);
+                }
+            }
+            step += 1;
+            match found.filter(|v| !polygon.has(v, same)) {
+                None => {
+                    polygon.is_closed[side % MAX_CORNERS] = is_side && !is_covered;
+                    if n == 4 && polygon.is_parallelogram(SYMMETRY_REL_TOL * self.extent) {
+                        break;
+                    }
+                }
+                // Beyond an end of an edge.
+                Some(v) if !is_side && n == 2 => {
+                    polygon.corners[usize::from(step == 3)] = v;
+                    polygon.is_closed = [false; MAX_CORNERS];
+                    step = 0;
+                }
+                Some(v) => {
+                    polygon.insert(side, &v);
+                    step = 0;
+                    // A corner below the new one may now be lower in all directions.
+                    for i in [side + 2, side] {
+                        let corner = polygon.side(i)[0];
+                        let lower = larger(corner.z - v.z, 0.0) * self.depth_over_tilt;
+                        if lower * lower > offset(corner, &v).norm_squared() {
+                            polygon.remove(i);
+                        }
+                    }
+                }
+            }
+        }
+        polygon.write_fan(fan, self.vertex_offset);
+        Ok(true)
+    }
+
+    /// Returns the side of a polygon beyond which a corner is to be searched next, and the direction; None if the polygon
+    /// is complete. Around a corner, directions are the axes; around an edge those to both sides and beyond both ends.
+    #[inline(always)]
+    fn next_direction(
+        &self,
+        polygon: &Polygon,
+        step: usize,
+        least_side: f64,
+    ) -> Option<(usize, Vec2)> {
+        match (polygon.len, step) {
+            (1, 0..4) => Some((0, four_directions(Vec2::x())[step])),
+            (2, 0..2) => Some((step, self.outwards(polygon.side(step)))),
+            (2, 2..4) => {
+                let [p, q] = polygon.side(step - 2);
+                let along = offset(p, q);
+                Some((0, along * (1.0 / along.norm())))
+            }
+            (0..3 | MAX_CORNERS, _) => None,
+            _ => {
+                let side = polygon.longest_open_side(least_side * least_side)?;
+                Some((side, self.outwards(polygon.side(side))))
+            }
+        }
+    }
+
+    /// Returns the unit direction out of a side along which both of its ends have the same height.
+    #[inline(always)]
+    fn outwards(&self, [p, q]: [&Vec3; 2]) -> Vec2 {
+        let side = offset(p, q);
+        let per_length = 1.0 / side.norm();
+        let along = side * per_length;
+        let lean = (q.z - p.z) * self.depth_over_tilt * per_length;
+        let lean = lesser(larger(lean, -1.0), 1.0);
+        Vec2::new(along.y, -along.x) * (1.0 - lean * lean).sqrt() + along * lean
+    }
+
+    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices; `is_side`: towards it
+    /// within 27°. (The directions that return a vertex form a convex set, which mostly contains the normal.)
+    #[inline(always)]
+    fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
+        let same = self.same_distance();
+        self.known.iter().any(|pair| {
+            let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
+            let aside = if is_side {
+                2.0 * tilt.perp(&out).abs()
+            } else {
+                0.0
+            };
+            tilt.dot(&out) - aside >= MIN_COVER * self.tilt
+                && ends.iter().any(|end| is_within(&v, end, same))
+        })
+    }
+}
+
+/// The corners of a polytope found so far, counterclockwise.
+#[derive(Default)]
+struct Polygon {
+    corners: [Vec3; MAX_CORNERS],
+    /// Whether there is no corner beyond the side from each corner to the next.
+    is_closed: [bool; MAX_CORNERS],
+    len: usize,
+}
+
+impl Polygon {
+    /// Appends a corner unless it is the last or the first one.
+    #[inline(always)]
+    fn push_distinct(&mut self, v: &Vec3, same: f64) {
+        let n = self.len % MAX_CORNERS;
+        let last = n.saturating_sub(1);
+        let is_old =
+            is_within(v, &self.corners[last], same) || is_within(v, &self.corners[0], same);
+        if n == 0 || !is_old {
+            self.corners[n] = *v;
+            self.len = n + 1;
+        }
+    }
+
+    /// Returns the ends of side `i`, modulo the number of corners, for `i` below twice that.
+    #[inline(always)]
+    fn side(&self, i: usize) -> [&Vec3; 2] {
+        let i = if i < self.len { i } else { i - self.len };
+        let next = if i + 1 < self.len { i + 1 } else { 0 };
+        [i, next].map(|i| &self.corners[i.min(MAX_CORNERS - 1)])
+    }
+
+    /// Returns the longest side that is not closed and at least partly in the overlap.
+    #[inline(always)]
+    fn longest_open_side(&self, least2: f64) -> Option<usize> {
+        let (mut longest, mut found) = (least2, None);
+        for i in 0..self.len.min(MAX_CORNERS) {
+            let [p, q] = self.side(i);
+            let length2 = offset(p, q).norm_squared();
+            if length2 > longest && !self.is_closed[i] && (p.z < 1.0 || q.z < 1.0) {
+                (longest, found) = (length2, Some(i));
+            }
+        }
+        found
+    }
+
+    /// Returns whether a vertex is a corner.
+    #[inline(always)]
+    fn has(&self, v: &Vec3, same: f64) -> bool {
+        let mut corners = self.corners.iter().take(self.len);
+        corners.any(|corner| is_within(corner, v, same))
+    }
+
+    /// Inserts a corner beyond a side.
+    #[inline(always)]
+    fn insert(&mut self, side: usize, v: &Vec3) {
+        let mut i = self.len.min(MAX_CORNERS - 1);
+        while i > side + 1 {
+            (self.corners[i], self.is_closed[i]) = (self.corners[i - 1], self.is_closed[i - 1]);
+            i -= 1;
+        }
+        (self.corners[i], self.is_closed[i]) = (*v, false);
+        self.is_closed[side % MAX_CORNERS] = false;
+        self.len += 1;
+    }
+
+    /// Removes a corner.
+    #[cold]
+    #[inline(never)]
+    fn remove(&mut self, i: usize) {
+        let removed = i % self.len.max(1);
+        for i in 1..MAX_CORNERS {
+            if i > removed {
+                self.corners[i - 1] = self.corners[i];
+                self.is_closed[i - 1] = self.is_closed[i];
+            }
+        }
+        self.len -= 1;
+        let last = (removed + self.len).saturating_sub(1) % self.len.max(1);
+        self.is_closed[last % MAX_CORNERS] = false;
+    }
+
+    /// Returns whether four corners are a parallelogram.
+    #[inline(always)]
+    fn is_parallelogram(&self, tolerance: f64) -> bool {
+        let [a, b, c, d, ..] = &self.corners;
+        (a + c - b - d).xy().norm_squared() < tolerance * tolerance
+    }
+
+    /// Makes the fan of the corners, each moved outwards; of an edge, its ends also to both sides.
+    #[inline(always)]
+    fn write_fan(&self, fan: &mut Fan, distance: f64) {
+        let corners = self.corners.get(..self.len).unwrap_or(&[]);
+        fan.len = 0;
+        if let [a, b] = corners {
+            let along = offset(a, b);
+            let out = four_directions(along * (1.0 / along.norm()));
+            for (v, k) in [(a, 2), (a, 3), (b, 0), (b, 1)] {
+                fan.push(moved(v, out[k], distance));
+            }
+            return;
+        }
+        let mean = corners.iter().sum::<Vec3>() * (1.0 / corners.len() as f64);
+        for v in corners {
+            let out = offset(&mean, v);
+            let norm2 = larger(out.norm_squared(), f64::MIN_POSITIVE);
+            fan.push(moved(v, out, distance / norm2.sqrt()));
+        }
+    }
+}
