@@ -58,7 +58,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let (mut hit, portal) = directional::along(&self.difference, dir, &self.settings)?;
         let mut set = VertexSet::EMPTY;
         for plane in portal.iter().flat_map(|p| &p.planes) {
-            set.push(&plane.normal, &plane.point);
+            set.push(&plane.dir, &plane.point);
         }
         self.prove_overlap(&mut hit, &mut set, false)?;
         *state = WarmStart::towards(hit.normal);

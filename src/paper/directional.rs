@@ -15,8 +15,8 @@
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::Vec3;
 use crate::minkowski::support::{MinkowskiDifference, SupportMap};
-use crate::minkowski::support_query::Stop;
-use crate::paper::gao::{Portal, RayEnd, RaySearch, SupportPlane, Until, make_result, rounding};
+use crate::minkowski::support_query::{Stop, SupportPlane};
+use crate::paper::gao::{Portal, RayEnd, RaySearch, Until, make_result, rounding, support_plane};
 use crate::types::{Penetration, Settings, Status};
 
 /// Follows the ray along unit `dir` to the boundary of D, in at most [`MAX_PROVEN_POINTS`] iterations. Requires the
@@ -30,7 +30,7 @@ pub fn along<A: SupportMap, B: SupportMap>(
     settings: &Settings,
 ) -> Result<(Penetration, Option<Portal>), Stop> {
     let budget = settings.max_iterations.min(MAX_PROVEN_POINTS);
-    let first = SupportPlane::of(md, *dir)?;
+    let first = support_plane(md, *dir)?;
     let mut search = RaySearch {
         md,
         tolerance: settings.tolerance,
@@ -46,7 +46,7 @@ pub fn along<A: SupportMap, B: SupportMap>(
         RayEnd::Vertex | RayEnd::Touch | RayEnd::Shortcut(_) => (None, first),
     };
     let plane = first_met(dir, plane, portal.as_ref());
-    let depth = plane.depth / dir.dot(&plane.normal);
+    let depth = plane.depth / dir.dot(&plane.dir);
     let lower = match &portal {
         Some(portal) => inscribed(dir, portal),
         None if matches!(end, RayEnd::Vertex) => depth,
@@ -75,10 +75,10 @@ const FLOOR_ROUNDINGS: f64 = 8.0;
 /// Returns the first of the support planes on the ray, among `plane` and those of the portal. All of them are sound
 /// upper bounds.
 fn first_met(dir: &Vec3, plane: SupportPlane, portal: Option<&Portal>) -> SupportPlane {
-    let ray_parameter = |p: &SupportPlane| p.depth / dir.dot(&p.normal);
+    let ray_parameter = |p: &SupportPlane| p.depth / dir.dot(&p.dir);
     let mut best = plane;
     for p in portal.iter().flat_map(|p| &p.planes) {
-        if dir.dot(&p.normal) > 0.0 && ray_parameter(p) < ray_parameter(&best) {
+        if dir.dot(&p.dir) > 0.0 && ray_parameter(p) < ray_parameter(&best) {
             best = *p;
         }
     }

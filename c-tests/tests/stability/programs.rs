@@ -10,6 +10,7 @@ fn source(name: &str) -> Program {
 }
 
 /// Builds a program with this library alone.
+#[cfg(not(feature = "single"))]
 pub fn alone(name: &str) -> Executable {
     source(name).flag("-DOURS_ALONE").link_ours_static().build()
 }
