@@ -140,7 +140,7 @@ readme_table() {
         END {
             theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
             base = theirs SUBSEP "MPR"
-            print "| call | wrong | error of the depth, at most | support points | time | time, overlapping | faster above |"
+            print "| call | wrong | error of the depth, at most | support points | time | time, overlapping | break-even |"
             print "|---|---|---|---|---|---|---|"
             row("libccd `ccdMPRPenetration`", theirs, "MPR", "unbounded")
             row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "unbounded")

@@ -31,8 +31,9 @@ use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
 
-/// Number of most recent known vertices used. With 16 a hit takes 0.3 % fewer support points and 1 % more instructions.
-pub const MAX_KNOWN: usize = 8;
+/// Number of most recent known vertices used. Measured: with 8 a hit takes 0.8 % fewer instructions and 0.3 % more support
+/// points, and a position of nearly parallel frusta (`judged hard`) is outside.
+pub const MAX_KNOWN: usize = 16;
 /// Returns whether the distance of two vertices along each axis is at most `distance`.
 #[inline(always)]
 pub fn is_within(a: &Vec3, b: &Vec3, distance: f64) -> bool {
