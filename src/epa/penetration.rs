@@ -13,7 +13,7 @@
 //!    proven. Most shallow contacts end here.
 //! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron; if it does not come to contain the origin, or
 //!    rounding ends it, from two tetrahedra of GJK. Full buffers are replaced by larger ones.
-//! 6. *Result*: depth and direction are those of the upper bound; lower bound and witness points are the polytope's.
+//! 6. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
 //! Departures. Steps 3 to 5 take known differences before callbacks. If a known difference is beyond the plane of the
 //! result, a callback has contradicted itself; if the difference of the centers is beyond an evaluated plane, a center
