@@ -23,7 +23,7 @@
 use crate::contact::fan::Fan;
 use crate::contact::frame::ContactFrame;
 use crate::contact::tuning::{
-    COMMON_DROP_FACTOR, MAX_TILT_TAN, MIN_COSINE, MIN_TURN_REL, SAME_REL, TILT_FACTOR,
+    COMMON_DROP_FACTOR, MAX_TILT_TAN, MIN_COSINE, MIN_TURN_REL, POINT_REL, SAME_REL, TILT_FACTOR,
     VERTEX_OFFSET_REL,
 };
 use crate::geometry::polygon::Vec2;
@@ -223,8 +223,8 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         SAME_REL * self.extent
     }
 
-    /// Finds the feature of an object and makes its fan. Returns false if the fan has no area: the deepest point is the
-    /// center of pressure.
+    /// Finds the feature of an object and makes its fan. Returns false if the deepest point is the center of pressure:
+    /// the feature is a point, or the fan has no area.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -237,8 +237,16 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         {
             self.find_polygon(&mut evaluated, false, fan)?;
         }
-        let vertices = fan.vertices.iter().take(fan.len);
-        let least = vertices.fold(1.0, |least, v| lesser(v.z, least));
+        let (mut least, mut is_point) = (1.0, true);
+        let size2 = POINT_REL * POINT_REL * self.extent * self.extent;
+        for v in fan.vertices.iter().take(fan.len) {
+            let drop = larger(v.z, 1.0);
+            is_point &= v.xy().norm_squared() <= size2 * drop * drop;
+            least = lesser(v.z, least);
+        }
+        if is_point {
+            return Ok(false);
+        }
         for v in fan.vertices.iter_mut().take(fan.len) {
             v.z -= COMMON_DROP_FACTOR * least;
         }
@@ -247,22 +255,21 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     }
 }
 
-/// Returns for both objects whether two directions that differ by more than `turned` returned the same vertex, within
-/// `same`.
+/// Returns for both objects whether different directions returned the same vertex.
 #[inline(always)]
 fn have_repeated_vertex(known: &[KnownPair], same: f64, turned: f64) -> [bool; 2] {
-    // The greatest excess over the limits in place of comparisons, for both objects in one operation.
-    let mut excess = [0.0; 2];
+    let mut repeated = [0_u64; 2];
     for (i, v) in known.iter().enumerate() {
         for w in known.iter().take(i) {
-            let turn = (v.tilt[0] - w.tilt[0]).abs() + (v.tilt[1] - w.tilt[1]).abs() - turned;
-            for (k, excess) in excess.iter_mut().enumerate() {
-                let distance = (v.x[k] - w.x[k]).abs() + (v.y[k] - w.y[k]).abs();
-                *excess = larger(lesser(turn, same - distance), *excess);
+            let turn = larger((v.tilt[0] - w.tilt[0]).abs(), (v.tilt[1] - w.tilt[1]).abs());
+            let limit = if turn > turned { same } else { -1.0 };
+            for (k, repeated) in repeated.iter_mut().enumerate() {
+                let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
+                *repeated |= u64::from(distance <= limit) & u64::from(v.drop[k] <= 1.0);
             }
         }
     }
-    excess.map(|excess| excess > 0.0)
+    repeated.map(|n| n > 0)
 }
 
 /// The evaluated vertices of one object: known ones and those queried for its feature.

@@ -10,7 +10,7 @@
 
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, ObjectVertices, four_directions, is_within};
-use crate::contact::tuning::{MIN_COVER, MIN_SIDE_REL, SYMMETRY_REL_TOL};
+use crate::contact::tuning::{MIN_COVER, POINT_REL, SAME_DROP_TOL, SYMMETRY_REL_TOL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
@@ -38,7 +38,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         for v in &evaluated.extremes(self.depth_over_tilt) {
             polygon.push_distinct(v, same);
         }
-        let least_side = MIN_SIDE_REL * self.extent;
+        let least_side = POINT_REL * self.extent;
         // The number of directions done around a corner or an edge, and that of queries that returned known vertices
         // and new ones.
         let (mut step, mut hits, mut misses) = (0, 0, 0);
@@ -232,11 +232,12 @@ impl Polygon {
         self.is_closed[last % MAX_CORNERS] = false;
     }
 
-    /// Returns whether four corners are a parallelogram.
+    /// Returns whether four corners are a parallelogram, in space too.
     #[inline(always)]
     fn is_parallelogram(&self, tolerance: f64) -> bool {
         let [a, b, c, d, ..] = &self.corners;
-        (a + c - b - d).xy().norm_squared() < tolerance * tolerance
+        let gap = a + c - b - d;
+        gap.xy().norm_squared() < tolerance * tolerance && gap.z.abs() < SAME_DROP_TOL
     }
 
     /// Makes the fan of the corners, each moved outwards; of an edge, its ends also to both sides.

@@ -34,9 +34,9 @@ pub const MIN_CURVED_DROP: f64 = 0.3;
 pub const MAX_CURVED_DROP: f64 = 0.9;
 /// Largest length of the sum of two opposite vertices that count as symmetric, relative to the extent.
 pub const SYMMETRY_REL_TOL: f64 = 0.004;
-/// Least length of a side beyond which a corner is searched, relative to the extent. Without it the root mean square error
-/// grows by 2.5 %.
-pub const MIN_SIDE_REL: f64 = 0.016;
+/// A feature no larger than this, relative to the extent, counts as a point: the center of pressure is within a
+/// quarter of that size. No corner is searched beyond a shorter side.
+pub const POINT_REL: f64 = 0.016;
 /// Distance, relative to the extent, below which two vertices are the same.
 pub const SAME_REL: f64 = 1e-7;
 /// Largest drop, in depths, that counts as in the support plane: an error of a third of this fraction of the half
