@@ -16,7 +16,7 @@ use crate::ffi::warm::NAME;
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::Stop;
+use crate::minkowski::support_query::if_overlapping;
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
@@ -360,17 +360,13 @@ where
 }
 
 /// Runs `solve` with the state of `warm`, or a cold one without it, and stores the new state. A fault
-/// leaves the state unchanged. Returns `None` if the shapes are apart.
+/// leaves the state unchanged.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
-) -> Result<Option<R>, Error> {
+    solve: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
+) -> Result<R, Error> {
     let mut state = warm.as_ref().map_or(WarmStart::COLD, |warm| warm.0);
-    let found = match solve(&mut state) {
-        Ok(found) => Some(found),
-        Err(Stop::Separated(_)) => None,
-        Err(Stop::Fault(fault)) => return Err(fault.into()),
-    };
+    let found = solve(&mut state)?;
     if let Some(warm) = warm {
         warm.0 = state;
     }
@@ -396,7 +392,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     let found = with_state(warm, |state| {
         let found = solver.run(&pair, state, &mut OwnedBuffers::default());
         pair.complete(state, &found);
-        found
+        if_overlapping(found)
     })?;
     Ok(found.map(|hit| Penetration {
         depth: hit.depth as Real,
@@ -491,7 +487,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     let overlap = with_state(warm, |state| {
         let found = pair.intersect(state);
         pair.complete(state, &found);
-        found
+        if_overlapping(found)
     })?;
     Ok(overlap.is_some())
 }
@@ -534,10 +530,9 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
         return Err(Error::BadInput(cause));
     }
     let pair = make_pair(a, b, settings, warm.is_some())?;
-    let distance = with_state(warm, |state| {
-        Ok(pair.signed_distance(&margins, state, &mut OwnedBuffers::default())?)
+    let d = with_state(warm, |state| {
+        pair.signed_distance(&margins, state, &mut OwnedBuffers::default())
     })?;
-    let d = distance.unwrap_or_default();
     let points = settings.want.points;
     Ok(Distance {
         distance: lower_to_real(d.lower),

@@ -25,7 +25,7 @@ use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, SupportQuery};
+use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::minkowski::warm_start::{WarmKind, WarmStart};
@@ -220,10 +220,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let start = hit.normal;
-        let found = match local::penetration(&mut query, &mut set, &start, true, &settings) {
-            Ok(found) => found,
-            Err(Stop::Separated(_)) => return Ok(false),
-            Err(Stop::Fault(fault)) => return Err(fault),
+        let found = local::penetration(&mut query, &mut set, &start, true, &settings);
+        let Some(found) = if_overlapping(found)? else {
+            return Ok(false);
         };
         let is_minimum = found.status == Status::Converged
             && found.depth <= hit.depth + query.scale.tolerance(settings.tolerance);

@@ -80,7 +80,7 @@ enum class Cause : int {
     iteration_limit = CCD_STATUS_ITERATION_LIMIT, /**< Settings::max_iterations was reached */
     support_limit = CCD_STATUS_SUPPORT_LIMIT,     /**< the library's own limit of support points was reached */
     rounding = CCD_STATUS_ROUNDING,               /**< more support points would not help */
-    inconsistent_support = CCD_STATUS_INCONSISTENT_SUPPORT /**< two points of a support function contradict each other */
+    inconsistent_support = CCD_STATUS_INCONSISTENT_SUPPORT /**< two points of a support function contradict each other, or a center is outside */
 };
 
 /** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */

@@ -110,8 +110,8 @@ extern "C" {
 #define CCD_STATUS_ROUNDING 3
 
 /**
- * Two points of a support function contradict each other. depth is sound for the points that were
- * returned; nothing is proven, and depth_lower is 0. ccdCheck finds such faults.
+ * Two points of a support function contradict each other, or a center is outside its object.
+ * depth is sound for the points that were returned; nothing is proven, and depth_lower is 0. ccdCheck finds such faults.
  */
 #define CCD_STATUS_INCONSISTENT_SUPPORT 4
 

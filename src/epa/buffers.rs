@@ -16,7 +16,7 @@ pub const MAX_DEFAULT_POINTS: u64 = 160;
 /// The limit of support points of a query that proves the tolerance, up to the end of its polytope, and of the published
 /// method (along, incremental, planar).
 ///
-/// No query is to take more than 400 support points in all. Derived: 400 − 80. Measured (`cargo run --release --example
+/// No query is to take more than 400 support points in all. Derived: 400 − 80. Measured (`cargo run --release -p lab --bin
 /// campaigns -- wide`): up to 80 more, on nearly coincident bodies, are evaluated beyond this limit, for starts of the
 /// polytope that do not contain the origin yet and in the local search that follows
 /// ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). Queries without a polytope have

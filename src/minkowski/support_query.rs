@@ -43,6 +43,16 @@ impl From<Fault> for Stop {
     }
 }
 
+/// Returns the result of a query; `None` if the objects are separated.
+#[inline(always)]
+pub fn if_overlapping<T>(found: Result<T, Stop>) -> Result<Option<T>, Fault> {
+    match found {
+        Ok(found) => Ok(Some(found)),
+        Err(Stop::Separated(_)) => Ok(None),
+        Err(Stop::Fault(fault)) => Err(fault),
+    }
+}
+
 /// One evaluated direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SupportSample {

@@ -21,7 +21,7 @@ use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Vec3, larger};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap};
-use crate::minkowski::support_query::{Stop, SupportQuery};
+use crate::minkowski::support_query::{SupportQuery, if_overlapping};
 use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
 use crate::types::{Penetration, Settings, Status};
@@ -111,11 +111,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<Option<Penetration>, Fault> {
         let found = self.proven(state, arena);
         self.complete(state, &found);
-        match found {
-            Ok(hit) => Ok(Some(hit)),
-            Err(Stop::Separated(_)) => Ok(None),
-            Err(Stop::Fault(fault)) => Err(fault),
-        }
+        if_overlapping(found)
     }
 
     /// Finds the closest points of the cores, from the separating axis of the state. Returns them with the radii of the
