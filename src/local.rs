@@ -23,7 +23,7 @@
 //! 5. *Normal*: if the foot is outside the face, the next ray is along the face's normal, without a callback. If it is
 //!    inside, the normal is evaluated, and is a candidate if no point is above the face.
 //! 6. *Confirmation* of a candidate: a foot on an edge may be a saddle, and a sharp tip can satisfy the sphere fit.
-//!    Both are tested by directions tilted by [`TILT_RAD`], which are evaluated if no known direction is near.
+//!    Both are tested by directions tilted by [`CONFIRM_TILT_RAD`], which are evaluated if no known direction is near.
 //! 7. *Overlap*: proven if the tetrahedron of interior point and face contains the origin, else by GJK; or an evaluated
 //!    direction separates.
 //!
@@ -43,12 +43,14 @@ use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::newton::newton_step;
 use crate::math::{Vec3, larger, lesser, normal, normalise_unscaled, perpendicular};
-use crate::minkowski::sphere_fit::{
-    MAX_FAILED_PREDICTIONS, MIN_CORE_DISTANCE_REL, MIN_GAIN, PREDICTION_REL_TOL, SphereFit,
-};
+use crate::minkowski::sphere_fit::{MIN_CORE_DISTANCE_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tolerance::KNOWN_LEVEL;
+use crate::minkowski::tuning::{
+    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, EQUAL_LEVEL, KNOWN_LEVEL,
+    MAX_FAILED_PREDICTIONS, MIN_GAIN, MIN_LENGTH_REL, PREDICTION_REL_TOL, SAME_VALLEY_COS,
+    SPHERE_TILT_RAD,
+};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
 use crate::trace;
@@ -57,26 +59,8 @@ use crate::types::{Penetration, Settings, Status};
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
 /// minimum, the longest that ends with one takes 45; with 48 2 % of coincident centers end so at fine tolerances.
 pub const MAX_WALK_POINTS: usize = 60;
-/// The tilt of the directions that confirm a minimum, radians: no support value at this angle may be lower. A face
-/// that is narrower, as seen from the origin, needs such a confirmation.
-const TILT_RAD: f64 = 0.015;
-/// The largest factor between [`TILT_RAD`] and the angle of a known direction that confirms a minimum in its place.
-const TILT_RANGE: f64 = 2.5;
-/// The largest angle of such a direction for spheres, radians: their support values are known at any angle.
-const SPHERE_TILT_RAD: f64 = 0.6;
-/// The least cosine between such a direction and the tilted one, seen along the direction of the minimum.
-const NEAR_COS: f64 = 0.6;
-/// The least cosine between a face's normal and the direction of the upper bound at which they count as in the same
-/// valley: 11 degrees. Measured on hulls, started 5 degrees from a minimum: with 0.9 2.2 % of the pairs end in another
-/// minimum, with 0.98 1.0 %.
-const SAME_VALLEY_COS: f64 = 0.98;
 /// Half of the square of the angle, radians, below which two directions count as the same.
 const SAME_DIR_EPS: f64 = 1e-13;
-/// The difference, in tolerances, up to which two depths count as equal. The rest is reserved for the error of the
-/// witness points.
-const EQUAL_LEVEL: f64 = 0.8;
-/// The least length of the ray in D that is assumed in portal discovery, in sizes.
-const MIN_LENGTH_REL: f64 = 0.1;
 
 /// A face of the inner model: the last portal of a ray.
 #[derive(Clone, Copy)]
@@ -235,7 +219,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let has_center = self.query.interior.is_some();
         if !has_center {
             // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
-            let opposite_dir = perpendicular(start) * TILT_RAD - start;
+            let opposite_dir = perpendicular(start) * CONFIRM_TILT_RAD - start;
             // Not stored in the set: as a corner it would make the portals wide.
             let opposite = self
                 .query
@@ -265,7 +249,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 MIN_LENGTH_REL * self.query.scale.size(),
             );
             // The ring's tilt is half of that of the directions that confirm a minimum.
-            let ring_tilt = 0.5 * TILT_RAD;
+            let ring_tilt = 0.5 * CONFIRM_TILT_RAD;
             let portal = discover(self.query, self.set, &ray, length, tolerance, ring_tilt)?;
             let step = match portal {
                 Some(mut portal) => self.refine(&ray, &mut portal, tolerance)?,
@@ -406,8 +390,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if is_inside && (face.offset - upper.depth).abs() <= EQUAL_LEVEL * tolerance {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
-            let allowed2 = if cone < TILT_RAD {
-                lesser((KNOWN_LEVEL * TILT_RAD).powi(2), tolerance / upper.depth)
+            let allowed2 = if cone < CONFIRM_TILT_RAD {
+                lesser(
+                    (KNOWN_LEVEL * CONFIRM_TILT_RAD).powi(2),
+                    tolerance / upper.depth,
+                )
             } else {
                 0.25 * cone * cone
             };
@@ -515,7 +502,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             return Ok(false);
         }
         // The angle of the foot's distance from the closest edge is at most its tangent.
-        if !(2.0 * face.foot_depth() < TILT_RAD * face.offset) {
+        if !(2.0 * face.foot_depth() < CONFIRM_TILT_RAD * face.offset) {
             return Ok(true);
         }
         let axis = face.perpendicular_to_longest_edge();
@@ -555,8 +542,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     ) -> Result<bool, Stop> {
         trace::stage("confirmation");
         let before = self.query.upper.depth;
-        let far = center_tolerance.map_or(TILT_RANGE * TILT_RAD, |_| SPHERE_TILT_RAD);
-        let near = TILT_RAD / TILT_RANGE;
+        let far =
+            center_tolerance.map_or(CONFIRM_TILT_RANGE * CONFIRM_TILT_RAD, |_| SPHERE_TILT_RAD);
+        let near = CONFIRM_TILT_RAD / CONFIRM_TILT_RANGE;
         let mut is_known = [false; 3];
         for k in 0..self.set.len() {
             let dir = self.set.dir(k);
@@ -571,15 +559,16 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 .is_none_or(|tolerance| self.fit.is_confirmed_twice(self.set, pair, tolerance));
             for (is_known, direction) in is_known.iter_mut().zip(directions) {
                 let along = off.dot(direction);
-                *is_known |=
-                    is_accepted && along > 0.0 && along * along > NEAR_COS * NEAR_COS * sine2;
+                *is_known |= is_accepted
+                    && along > 0.0
+                    && along * along > CONFIRM_NEAR_COS * CONFIRM_NEAR_COS * sine2;
             }
         }
         for (direction, _) in directions.iter().zip(is_known).filter(|(_, known)| !known) {
             if self.limit().is_some() {
                 return Ok(false);
             }
-            let tilted = n + direction * TILT_RAD;
+            let tilted = n + direction * CONFIRM_TILT_RAD;
             let sample = self.evaluate(&(tilted / tilted.norm()))?;
             if sample.h < before - KNOWN_LEVEL * tolerance {
                 return Ok(false);

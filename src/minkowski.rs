@@ -20,6 +20,7 @@
 //! | [`sphere_fit`] | sphere fits, which choose the directions to evaluate |
 //! | [`separating_axis`] | the axis test for pairs that stay separated |
 //! | [`warm_start`] | the state of a pair from one query to the next |
+//! | [`tuning`] | the tuned constants of the search |
 //! | [`validate`] | tests of a support function and a center |
 
 pub mod general_position;
@@ -28,6 +29,7 @@ pub mod sphere_fit;
 pub mod support;
 pub mod support_query;
 pub mod tolerance;
+pub mod tuning;
 pub mod validate;
 pub mod vertex_set;
 pub mod warm_start;

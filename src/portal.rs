@@ -27,31 +27,16 @@ use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tolerance::{GapLimit, KNOWN_LEVEL};
+use crate::minkowski::tolerance::GapLimit;
+use crate::minkowski::tuning::{
+    KNOWN_LEVEL, MAX_TILTS, SHALLOW_REL, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
+};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
 
-/// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
-/// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
-/// support points in intersection tests.
-const TILT_GROWTH: f64 = 1.4;
-/// The largest tilt is max([`TILT_WIDTH_OFF`] · distance of v1 from the ray, [`TILT_WIDTH_EDGE`] · |v1 v2|) / length of
-/// the ray in D. Measured: 4 takes 1 % fewer support points for the global minimum, and 13 % more for a local one of
-/// hulls, whose portals then extend into other valleys.
-const TILT_WIDTH_OFF: f64 = 2.75;
-/// The factor of the length of v1 v2 in the largest tilt, see [`TILT_WIDTH_OFF`].
-const TILT_WIDTH_EDGE: f64 = 0.75;
-/// The number of tilts that find no point on the other side of the ray before the perpendicular direction is
-/// evaluated.
-const MAX_TILTS: u32 = 3;
 /// The iteration limit of portal discovery and refinement, of the local search and of GJK. Each step comes closer to
 /// the surface of D, and few loops take forty; later steps only change rounding errors. Insensitive: 24 to 100.
 pub const MAX_STEPS: u32 = 100;
-/// The upper bound, in sizes, up to which a contact is shallow. The portal of a shallow contact is refined after the
-/// origin is on its inner side, because it is near the minimum; for deeper contacts the polytope is faster. Measured:
-/// without this limit deep overlaps take 4 to 13 % more instructions; with 0.15 boxes at medium depth take 11 % more,
-/// and spheres 8 % more support points.
-const SHALLOW_REL: f64 = 0.3;
 
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]

@@ -42,6 +42,7 @@ use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
+use crate::minkowski::tuning::MAX_POLYHEDRON_ITERATIONS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::{WarmKind, WarmStart};
 use crate::portal::{discover, refine};
@@ -52,8 +53,6 @@ use crate::types::{Penetration, Status};
 /// for the rounding of a plane and of a point above it if the size of D is twice the world extent; the rest is a
 /// reserve.
 const ROUNDING_GAP_EPS: f64 = 32.0;
-/// The number of iterations above which D counts as curved at the minimum ([`WarmKind::CurvedOverlap`]).
-const MAX_POLYHEDRON_ITERATIONS: u64 = 3;
 
 /// The input of a query besides the support functions.
 #[derive(Clone, Copy, Debug)]

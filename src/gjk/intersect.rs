@@ -31,19 +31,13 @@ use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
+use crate::minkowski::tuning::{GENERIC_FRACTION, MIN_CHORD_FRACTION};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
 use crate::trace;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
-/// Least distance of the interior point from the ends of its segment, relative to the segment's length.
-/// Measured on the recorded contacts: with 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
-const MIN_CHORD_FRACTION: f64 = 0.25;
-
-/// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
-/// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided.
-const GENERIC_FRACTION: f64 = 0.44;
 
 /// Points of D whose hull contains the origin, within rounding.
 #[derive(Clone, Copy, Debug)]

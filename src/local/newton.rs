@@ -21,17 +21,10 @@ use crate::local::{Model, Prediction};
 use crate::math::{Vec3, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::MIN_ANGLE2;
 use crate::minkowski::support_query::SupportPlane;
+use crate::minkowski::tuning::{
+    MAX_NEWTON_TAN, MIN_DETERMINANT_REL, MIN_NEWTON_WIDTH2, SMOOTH_REL_TOL,
+};
 use crate::minkowski::vertex_set::VertexSet;
-
-/// The largest tangent of the angle of Newton's step, and of the angle between the directions of the upper bound and
-/// of the entries from which the Hessian is computed.
-const MAX_NEWTON_TAN: f64 = 0.4;
-/// The least squared sine between the changes of direction of the two entries.
-const MIN_WIDTH2: f64 = 0.1;
-/// The least determinant of a Hessian with a minimum, in products of its diagonal.
-const MIN_DETERMINANT_REL: f64 = 0.01;
-/// The largest relative difference of e and f at which D counts as smooth between two entries.
-const SMOOTH_REL_TOL: f64 = 0.1;
 
 /// Returns the minimum that Newton's step from the entry of the upper bound predicts; `None` if the curvature there
 /// is unknown, or if the support function has no minimum near there.
@@ -52,7 +45,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
     // Not on a line with the first.
     let second = closest_entry(set, upper, |k| {
         let x = dir_change(k);
-        x1.perp(&x).powi(2) > MIN_WIDTH2 * x.norm_squared() * x1.norm_squared()
+        x1.perp(&x).powi(2) > MIN_NEWTON_WIDTH2 * x.norm_squared() * x1.norm_squared()
     })?;
     let x2 = dir_change(second);
     let [y1, y2] = [first, second].map(vertex_change);

@@ -21,16 +21,8 @@
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
+use crate::minkowski::tuning::{MAX_TRIES, MIN_TARGET_REL, TARGET_DECAY};
 use crate::trace;
-
-/// Number of axes evaluated before the pair is queried as if it were new.
-const MAX_TRIES: u32 = 2;
-/// Decay of the target separation per query. Insensitive: 0.8 to 0.99, at most 0.3 % of the support points
-/// of recorded contacts.
-const TARGET_DECAY: f64 = 0.95;
-/// Least target separation after an axis that did not separate, relative to the size of D. Measured: with
-/// 0.01 a cylinder over a box costs as much as without a least target.
-const MIN_TARGET_REL: f64 = 0.0035;
 
 /// An axis that separated the objects.
 #[derive(Clone, Copy, Debug, Default)]

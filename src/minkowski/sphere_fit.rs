@@ -26,6 +26,9 @@ use crate::geometry::barycentric;
 use crate::math::{Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
+use crate::minkowski::tuning::{
+    MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_GAIN, MIN_RING_K, MIN_SAMPLES, PREDICTION_REL_TOL,
+};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The differences allowed between two samples of one sphere.
@@ -59,27 +62,6 @@ const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
 pub const MIN_ANGLE2: f64 = 1e-10;
 /// The distance of the core from the origin up to which it counts as rounding, in radii.
 pub const MIN_CORE_DISTANCE_REL: f64 = 1e-9;
-/// The number of support points before fits are made. Measured: without it 3 % more instructions for recorded hits,
-/// and as many support points.
-const MIN_SAMPLES: usize = 4;
-/// The least predicted decrease of the upper bound for which a prediction is evaluated, in gaps. Insensitive: 0.2 to
-/// 0.5; 0 takes 7 % more support points in proofs.
-pub const MIN_GAIN: f64 = 0.3;
-/// The part of the predicted decrease by which the evaluated support value may miss the prediction. Insensitive: 0.2
-/// to 0.5.
-pub const PREDICTION_REL_TOL: f64 = 0.2;
-/// The number of failed predictions of a model after which it is not used any more. Without a limit some local
-/// searches take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends
-/// at the support limit.
-pub const MAX_FAILED_PREDICTIONS: u32 = 5;
-/// The least k = sqrt(1 − upper / ρ) for which a second ring of directions is evaluated around the best one. Below it
-/// the second ring is at most three times as wide as the first; EPA's face normals give such a ring. Without the
-/// limit proofs of category AXIS end at the support limit. Insensitive: 0.33 to
-/// 0.6.
-const MIN_RING_K: f64 = 0.5;
-/// The largest ratio of the widths of two rings. Measured: without it 11 % more support points in proofs to 1e-10 m
-/// of shallow round pairs.
-const MAX_RING_RATIO: f64 = 100.0;
 
 /// The source of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

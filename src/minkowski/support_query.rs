@@ -24,7 +24,8 @@
 use crate::math::{Vec3, from_real, larger, lesser, to_real};
 use crate::minkowski::general_position::{tilt_rad, tilted};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::tolerance::{KNOWN_LEVEL, Scale};
+use crate::minkowski::tolerance::Scale;
+use crate::minkowski::tuning::KNOWN_LEVEL;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
 

@@ -13,11 +13,10 @@
 
 use crate::math::{EPSILON, larger, lesser};
 use crate::minkowski::support::SupportPoint;
+use crate::minkowski::tuning::KNOWN_LEVEL;
 
 /// The relative tolerance of a default query: the largest gap between the bounds, as a fraction of the depth.
 pub const GAP_REL: f64 = 1e-3;
-/// The height, in allowed gaps, at which a known difference replaces a support call.
-pub const KNOWN_LEVEL: f64 = 0.2;
 /// The largest effective tolerance, as a fraction of the size of D.
 const MAX_TOLERANCE_REL: f64 = 2.5e-4;
 

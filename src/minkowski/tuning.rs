@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The warmccd developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+//! The tuned constants of the search for a depth or a distance, with what was tried.
+
+// Tolerances.
+
+/// The height, in allowed gaps, at which a known difference replaces a support call.
+pub const KNOWN_LEVEL: f64 = 0.2;
+
+// Sphere fits.
+
+/// The number of support points before fits are made. Measured: without it 3 % more instructions for recorded hits,
+/// and as many support points.
+pub const MIN_SAMPLES: usize = 4;
+/// The least predicted decrease of the upper bound for which a prediction is evaluated, in gaps. Insensitive: 0.2 to
+/// 0.5; 0 takes 7 % more support points in proofs.
+pub const MIN_GAIN: f64 = 0.3;
+/// The part of the predicted decrease by which the evaluated support value may miss the prediction. Insensitive: 0.2
+/// to 0.5.
+pub const PREDICTION_REL_TOL: f64 = 0.2;
+/// The number of failed predictions of a model after which it is not used any more. Without a limit some local
+/// searches take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends
+/// at the support limit.
+pub const MAX_FAILED_PREDICTIONS: u32 = 5;
+/// The least k = sqrt(1 − upper / ρ) for which a second ring of directions is evaluated around the best one. Below it
+/// the second ring is at most three times as wide as the first; EPA's face normals give such a ring. Without the
+/// limit proofs of category AXIS end at the support limit. Insensitive: 0.33 to 0.6.
+pub const MIN_RING_K: f64 = 0.5;
+/// The largest ratio of the widths of two rings. Measured: without it 11 % more support points in proofs to 1e-10 m
+/// of shallow round pairs.
+pub const MAX_RING_RATIO: f64 = 100.0;
+
+// The separating axis.
+
+/// Number of axes evaluated before the pair is queried as if it were new.
+pub const MAX_TRIES: u32 = 2;
+/// Decay of the target separation per query. Insensitive: 0.8 to 0.99, at most 0.3 % of the support points
+/// of recorded contacts.
+pub const TARGET_DECAY: f64 = 0.95;
+/// Least target separation after an axis that did not separate, relative to the size of D. Measured: with
+/// 0.01 a cylinder over a box costs as much as without a least target.
+pub const MIN_TARGET_REL: f64 = 0.0035;
+
+// Portal discovery and refinement.
+
+/// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
+/// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
+/// support points in intersection tests.
+pub const TILT_GROWTH: f64 = 1.4;
+/// The largest tilt is max([`TILT_WIDTH_OFF`] · distance of v1 from the ray, [`TILT_WIDTH_EDGE`] · |v1 v2|) / length of
+/// the ray in D. Measured: 4 takes 1 % fewer support points for the global minimum, and 13 % more for a local one of
+/// hulls, whose portals then extend into other valleys.
+pub const TILT_WIDTH_OFF: f64 = 2.75;
+/// The factor of the length of v1 v2 in the largest tilt, see [`TILT_WIDTH_OFF`].
+pub const TILT_WIDTH_EDGE: f64 = 0.75;
+/// The number of tilts that find no point on the other side of the ray before the perpendicular direction is
+/// evaluated.
+pub const MAX_TILTS: u32 = 3;
+/// The upper bound, in sizes, up to which a contact is shallow. The portal of a shallow contact is refined after the
+/// origin is on its inner side, because it is near the minimum; for deeper contacts the polytope is faster. Measured:
+/// without this limit deep overlaps take 4 to 13 % more instructions; with 0.15 boxes at medium depth take 11 % more,
+/// and spheres 8 % more support points.
+pub const SHALLOW_REL: f64 = 0.3;
+
+// GJK.
+
+/// Least distance of the interior point from the ends of its segment, relative to the segment's length.
+/// Measured on the recorded contacts: with 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
+pub const MIN_CHORD_FRACTION: f64 = 0.25;
+/// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
+/// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided.
+pub const GENERIC_FRACTION: f64 = 0.44;
+/// Largest tangent of the angle between a queried direction and the normal of the best plane. Measured on nine
+/// sets of pairs: 12 % more support points without the limit; insensitive from 0.5 to 0.8.
+pub const MAX_GJK_TILT_TAN: f64 = 0.6;
+
+// The polytope.
+
+/// The fraction of the gap between the closest face and the upper bound that a known difference must close to
+/// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
+/// the inserted points of deep pairs (boxes: 19.7k instead of 12.7k instructions).
+pub const INSERT_GAIN_REL: f64 = 0.6;
+/// The number of iterations above which D counts as curved at the minimum ([`CurvedOverlap`](crate::minkowski::warm_start::WarmKind::CurvedOverlap)).
+pub const MAX_POLYHEDRON_ITERATIONS: u64 = 3;
+
+// The local search.
+
+/// The tilt of the directions that confirm a minimum, radians: no support value at this angle may be lower. A face
+/// that is narrower, as seen from the origin, needs such a confirmation.
+pub const CONFIRM_TILT_RAD: f64 = 0.015;
+/// The largest factor between [`CONFIRM_TILT_RAD`] and the angle of a known direction that confirms a minimum in its place.
+pub const CONFIRM_TILT_RANGE: f64 = 2.5;
+/// The largest angle of such a direction for spheres, radians: their support values are known at any angle.
+pub const SPHERE_TILT_RAD: f64 = 0.6;
+/// The least cosine between such a direction and the tilted one, seen along the direction of the minimum.
+pub const CONFIRM_NEAR_COS: f64 = 0.6;
+/// The least cosine between a face's normal and the direction of the upper bound at which they count as in the same
+/// valley: 11 degrees. Measured on hulls, started 5 degrees from a minimum: with 0.9 2.2 % of the pairs end in another
+/// minimum, with 0.98 1.0 %.
+pub const SAME_VALLEY_COS: f64 = 0.98;
+/// The difference, in tolerances, up to which two depths count as equal. The rest is reserved for the error of the
+/// witness points.
+pub const EQUAL_LEVEL: f64 = 0.8;
+/// The least length of the ray in D that is assumed in portal discovery, in sizes.
+pub const MIN_LENGTH_REL: f64 = 0.1;
+
+// Newton's step.
+
+/// The largest tangent of the angle of Newton's step, and of the angle between the directions of the upper bound and
+/// of the entries from which the Hessian is computed.
+pub const MAX_NEWTON_TAN: f64 = 0.4;
+/// The least squared sine between the changes of direction of the two entries.
+pub const MIN_NEWTON_WIDTH2: f64 = 0.1;
+/// The least determinant of a Hessian with a minimum, in products of its diagonal.
+pub const MIN_DETERMINANT_REL: f64 = 0.01;
+/// The largest relative difference of e and f at which D counts as smooth between two entries.
+pub const SMOOTH_REL_TOL: f64 = 0.1;
