@@ -47,9 +47,8 @@ use crate::minkowski::sphere_fit::{MIN_CORE_DISTANCE_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, EQUAL_LEVEL, KNOWN_LEVEL,
-    MAX_FAILED_PREDICTIONS, MIN_GAIN, MIN_LENGTH_REL, PREDICTION_REL_TOL, SAME_VALLEY_COS,
-    SPHERE_TILT_RAD,
+    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, EQUAL_LEVEL, MAX_FAILED_PREDICTIONS,
+    MIN_LENGTH_REL, SAME_VALLEY_COS, SMALL_PART, SPHERE_TILT_RAD,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -307,7 +306,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         for _ in 0..MAX_STEPS {
             let n = normal(&portal[0].w, &portal[1].w, &portal[2].w);
             let height_eps = self.query.scale.height_eps();
-            let level = KNOWN_LEVEL * tolerance + height_eps;
+            let level = SMALL_PART * tolerance + height_eps;
             let mut w = self.set.farthest_vertex(&n);
             let height = n.dot(&(w.w - portal[0].w));
             // A corner is above its own face only by rounding; taken again, it would repeat until MAX_STEPS.
@@ -392,7 +391,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
                 lesser(
-                    (KNOWN_LEVEL * CONFIRM_TILT_RAD).powi(2),
+                    (SMALL_PART * CONFIRM_TILT_RAD).powi(2),
                     tolerance / upper.depth,
                 )
             } else {
@@ -445,7 +444,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether a prediction would lower the upper bound by enough for an evaluation.
     fn has_gain(&self, prediction: &Prediction, tolerance: f64) -> bool {
-        prediction.value < self.query.upper.depth - MIN_GAIN * tolerance
+        prediction.value < self.query.upper.depth - SMALL_PART * tolerance
     }
 
     /// Returns whether the upper bound is `value`, metres.
@@ -479,8 +478,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// before the evaluation, metres.
     fn slack(&self, prediction: &Prediction, before: f64, tolerance: f64) -> f64 {
         larger(
-            PREDICTION_REL_TOL * (before - prediction.value),
-            KNOWN_LEVEL * tolerance,
+            SMALL_PART * (before - prediction.value),
+            SMALL_PART * tolerance,
         )
     }
 
@@ -498,7 +497,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         tolerance: f64,
     ) -> Result<bool, Stop> {
         // The upper bound is lower: the walk continues from there.
-        if plane.depth > self.query.upper.depth + KNOWN_LEVEL * tolerance {
+        if plane.depth > self.query.upper.depth + SMALL_PART * tolerance {
             return Ok(false);
         }
         // The angle of the foot's distance from the closest edge is at most its tangent.
@@ -570,7 +569,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             }
             let tilted = n + direction * CONFIRM_TILT_RAD;
             let sample = self.evaluate(&(tilted / tilted.norm()))?;
-            if sample.h < before - KNOWN_LEVEL * tolerance {
+            if sample.h < before - SMALL_PART * tolerance {
                 return Ok(false);
             }
         }

@@ -29,7 +29,7 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::tuning::{
-    KNOWN_LEVEL, MAX_TILTS, SHALLOW_REL, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
+    MAX_TILTS, SHALLOW_REL, SMALL_PART, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
@@ -245,7 +245,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
         let mut w = set.farthest_vertex(&normal);
-        if !(normal.dot(&w.w) - offset > KNOWN_LEVEL * gap * length) {
+        if !(normal.dot(&w.w) - offset > SMALL_PART * gap * length) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }

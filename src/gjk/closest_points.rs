@@ -25,7 +25,7 @@ use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{KNOWN_LEVEL, MAX_GJK_TILT_TAN, MIN_GAIN, PREDICTION_REL_TOL};
+use crate::minkowski::tuning::{MAX_GJK_TILT_TAN, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
@@ -145,7 +145,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let (mut is_step, mut was_limited) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_STEPS {
-                match self.add_farthest(KNOWN_LEVEL * self.gap(goal)) {
+                match self.add_farthest(SMALL_PART * self.gap(goal)) {
                     None => return Ok(Status::Converged),
                     Some(true) => (),
                     Some(false) => break,
@@ -234,13 +234,13 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
         // It raises the lower bound, and not above the upper one.
         let is_useful =
-            |value: f64| value < bound.depth - MIN_GAIN * gap && -value < self.upper + gap;
+            |value: f64| value < bound.depth - SMALL_PART * gap && -value < self.upper + gap;
         let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
             return Ok(false);
         };
         let sample = self.query.evaluate_signed(&mut self.set, &n)?;
         self.was_prediction = true;
-        self.fit.is_confirmed = sample.h <= value + PREDICTION_REL_TOL * (bound.depth - value);
+        self.fit.is_confirmed = sample.h <= value + SMALL_PART * (bound.depth - value);
         Ok(true)
     }
 

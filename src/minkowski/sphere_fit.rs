@@ -27,7 +27,7 @@ use crate::math::{Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_GAIN, MIN_RING_K, MIN_SAMPLES, PREDICTION_REL_TOL,
+    MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_RING_K, MIN_SAMPLES, SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
@@ -297,11 +297,11 @@ impl SphereFit {
         let is_used = self.failures < MAX_FAILED_PREDICTIONS;
         let predicted = is_used.then(|| self.predict(set, corners, normal));
         if let Some((dir, value)) = predicted.flatten() {
-            if (value - upper.depth).abs() <= MIN_GAIN * gap {
+            if (value - upper.depth).abs() <= SMALL_PART * gap {
                 // The upper bound is what the fit predicts.
                 self.is_confirmed = true;
             }
-            if value < upper.depth - MIN_GAIN * gap {
+            if value < upper.depth - SMALL_PART * gap {
                 let source = DirectionSource::Prediction;
                 return QueryDirection { dir, source, value };
             }
@@ -461,7 +461,7 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     match next.source {
         DirectionSource::Normal => {}
         DirectionSource::Prediction => {
-            fit.is_confirmed = sample.h < next.value + PREDICTION_REL_TOL * (upper - next.value);
+            fit.is_confirmed = sample.h < next.value + SMALL_PART * (upper - next.value);
             if !fit.is_confirmed {
                 fit.failures += 1;
                 fit.radius = [0.0; 2];

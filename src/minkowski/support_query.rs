@@ -25,7 +25,7 @@ use crate::math::{Vec3, from_real, larger, lesser, to_real};
 use crate::minkowski::general_position::{tilt_rad, tilted};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::KNOWN_LEVEL;
+use crate::minkowski::tuning::SMALL_PART;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
 
@@ -293,13 +293,13 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Returns whether a support function contradicts itself at the upper bound: a known difference is beyond the
-    /// support plane by more than rounding and [`KNOWN_LEVEL`] of the tolerance.
+    /// support plane by more than rounding and [`SMALL_PART`] of the tolerance.
     #[inline(always)]
     pub fn is_inconsistent<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let SupportPlane { dir, depth, .. } = self.upper;
         let height = dir.dot(&set.farthest_vertex(&dir).w) - depth;
         let tolerance = self.scale.tolerance(self.tolerance);
-        height > larger(self.scale.tie_eps(), KNOWN_LEVEL * tolerance)
+        height > larger(self.scale.tie_eps(), SMALL_PART * tolerance)
     }
 }
 

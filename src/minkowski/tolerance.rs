@@ -13,7 +13,7 @@
 
 use crate::math::{EPSILON, larger, lesser};
 use crate::minkowski::support::SupportPoint;
-use crate::minkowski::tuning::KNOWN_LEVEL;
+use crate::minkowski::tuning::SMALL_PART;
 
 /// The relative tolerance of a default query: the largest gap between the bounds, as a fraction of the depth.
 pub const GAP_REL: f64 = 1e-3;
@@ -127,7 +127,7 @@ pub struct Bounds {
     pub allowed: f64,
     /// The height up to which a point counts as on a plane: [`Scale::height_eps`].
     pub rounding: f64,
-    /// The height above which a known difference is taken in place of a support call: [`KNOWN_LEVEL`].
+    /// The height above which a known difference is taken in place of a support call: [`SMALL_PART`].
     pub insert_height: f64,
 }
 
@@ -152,7 +152,7 @@ impl GapLimit {
         Bounds {
             allowed,
             rounding,
-            insert_height: rounding + KNOWN_LEVEL * allowed,
+            insert_height: rounding + SMALL_PART * allowed,
         }
     }
 }
@@ -200,7 +200,7 @@ mod tests {
             insert_height,
         } = gap.bounds(&scale, 1.001);
         assert!((allowed - GAP_REL * (1.001 - allowed)).abs() < 1e-15);
-        assert!(rounding == scale.height_eps() && insert_height > KNOWN_LEVEL * allowed);
+        assert!(rounding == scale.height_eps() && insert_height > SMALL_PART * allowed);
         assert_eq!(gap.allowed(&scale, 1e-5), 1e-6);
     }
 }
