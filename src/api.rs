@@ -20,11 +20,11 @@ use crate::minkowski::support_query::if_overlapping;
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
+use crate::query::Pair;
 use crate::query::signed_distance::Margins;
-use crate::query::{Pair, Wanted};
 use crate::solver::Solver;
 use crate::types;
-pub use crate::types::Status;
+pub use crate::types::{Status, Want};
 
 /// A convex shape, given by its support function.
 ///
@@ -112,38 +112,6 @@ fn validate_length(value: Real, cause: &'static str) -> Result<f64, Error> {
 /// A direction that is zero or not finite.
 fn validate_direction(dir: [Real; 3]) -> Result<Vec3, Error> {
     unit(&from_real(dir)).ok_or(Error::BadInput("a direction is zero or not finite"))
-}
-
-/// The requested results, besides depth, bounds and directions. A result that is not requested is
-/// zero and costs no support points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Want {
-    /// True to request the contact position. It costs 2 to 4 support points, at most 8 for a face of
-    /// more than four corners, none if a state shows that nothing has moved. May evaluate one shape
-    /// without the other.
-    pub pos: bool,
-    /// True to request the witness points, at no cost.
-    pub points: bool,
-}
-
-impl Want {
-    /// Requests both.
-    pub const ALL: Want = Want {
-        pos: true,
-        points: true,
-    };
-    /// Requests neither.
-    pub const NOTHING: Want = Want {
-        pos: false,
-        points: false,
-    };
-}
-
-impl Default for Want {
-    /// Returns [`Want::ALL`].
-    fn default() -> Self {
-        Want::ALL
-    }
 }
 
 /// Tolerance, iteration limit and requested results of a query.
@@ -326,12 +294,12 @@ fn make_pair<'a, A, B>(
     a: &'a A,
     b: &'a B,
     settings: &Settings,
-    has_state: bool,
 ) -> Result<ShapePair<'a, A, B>, Error>
 where
     A: Shape + ?Sized,
     B: Shape + ?Sized,
 {
+    let want = settings.want;
     let settings = types::Settings {
         tolerance: validate_length(settings.tolerance, "the tolerance is negative or NaN")?,
         max_iterations: ITERATION_CAP.min(settings.max_iterations),
@@ -351,11 +319,7 @@ where
         centers,
         first_dir: None,
         settings,
-        wanted: Wanted {
-            state: has_state,
-            points: true,
-            pos: false,
-        },
+        want,
     })
 }
 
@@ -387,8 +351,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     solver: Solver,
 ) -> Result<Option<Penetration>, Error> {
     let want = settings.want;
-    let mut pair = make_pair(a, b, settings, warm.is_some())?;
-    pair.wanted.pos = want.pos;
+    let pair = make_pair(a, b, settings)?;
     let found = with_state(warm, |state| {
         let found = solver.run(&pair, state, &mut OwnedBuffers::default());
         pair.complete(state, &found);
@@ -483,7 +446,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
-    let pair = make_pair(a, b, &Settings::default(), warm.is_some())?;
+    let pair = make_pair(a, b, &Settings::default())?;
     let overlap = with_state(warm, |state| {
         let found = pair.intersect(state);
         pair.complete(state, &found);
@@ -529,7 +492,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     if !(margins.margin1 + margins.margin2 < f64::from(Real::MAX)) {
         return Err(Error::BadInput(cause));
     }
-    let pair = make_pair(a, b, settings, warm.is_some())?;
+    let pair = make_pair(a, b, settings)?;
     let d = with_state(warm, |state| {
         pair.signed_distance(&margins, state, &mut OwnedBuffers::default())
     })?;

@@ -44,7 +44,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut set = VertexSet::EMPTY;
         self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
         *state = WarmStart::towards(hit.normal);
-        hit.pos = if self.wanted.pos && hit.status == Status::Converged && plane.is_none() {
+        hit.pos = if self.want.pos && hit.status == Status::Converged && plane.is_none() {
             self.contact_position(&set, &hit)?
         } else {
             hit.middle()

@@ -29,7 +29,7 @@ use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::minkowski::warm_start::{WarmKind, WarmStart};
-use crate::types::{Penetration, Settings, Status};
+use crate::types::{Penetration, Settings, Status, Want};
 
 /// A pair of objects, and what its caller wants to know of it: the input of a query.
 pub struct Pair<A, B> {
@@ -41,19 +41,8 @@ pub struct Pair<A, B> {
     pub first_dir: Option<Vec3>,
     /// The tolerance and the limits.
     pub settings: Settings,
-    /// What the caller reads.
-    pub wanted: Wanted,
-}
-
-/// The results of a query that its caller reads, besides depth, bounds and directions.
-#[derive(Clone, Copy, Debug)]
-pub struct Wanted {
-    /// The state for the next query.
-    pub state: bool,
-    /// The witness points. If they are not wanted, they may be zero.
-    pub points: bool,
-    /// The contact position. If it is not wanted, it may be zero.
-    pub pos: bool,
+    /// The results that the caller requests.
+    pub want: Want,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
@@ -80,7 +69,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(always)]
     pub fn complete<R>(&self, state: &mut WarmStart, found: &Result<R, Stop>) {
         match found {
-            Ok(_) if self.wanted.state => {
+            Ok(_) => {
                 if let Some(centers) = &self.centers {
                     state.set_center_direction(&centers.v);
                 }
@@ -160,7 +149,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let centers = self.centers.as_ref();
         let dir = intersect(&self.difference, centers, &first, is_remembered)?;
         // A state with a depth, from a penetration query, is more useful: keep it.
-        if self.wanted.state && !(state.is_overlap() && state.depth > 0.0) {
+        if !(state.is_overlap() && state.depth > 0.0) {
             *state = WarmStart::towards(dir);
         }
         Ok(())
@@ -198,7 +187,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut hit =
             local::penetration(&mut query, &mut set, &start, is_remembered, &self.settings)?;
         *state = WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false);
-        if hit.status == Status::Converged && self.wanted.pos {
+        if hit.status == Status::Converged && self.want.pos {
             hit.pos = self.contact_position(&set, &hit)?;
         }
         Ok(hit)
@@ -285,7 +274,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
                 _ => *state,
             },
             limits: *limits,
-            wants_points: self.wanted.points,
+            wants_points: self.want.points || self.want.pos,
         };
         self.minimize_from(&mut query, &first, &request, accepts_local, state, arena)
     }
@@ -307,7 +296,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             epa::penetration::penetration(query, first, request, arena, &mut set)?;
         *state = warm;
         if hit.status == Status::Converged {
-            if self.wanted.pos {
+            if self.want.pos {
                 hit.pos = self.contact_position(&set, &hit)?;
             }
             return Ok(hit);
@@ -316,7 +305,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             && self.improve_locally(&mut hit, &request.limits)?;
         hit.status = hit.status.unless(is_minimum && accepts_local);
         hit.pos = hit.middle();
-        if hit.status == Status::Converged && self.wanted.pos {
+        if hit.status == Status::Converged && self.want.pos {
             hit.pos = self.cold_contact_position(&hit)?;
         }
         Ok(hit)
@@ -364,11 +353,7 @@ mod tests {
             centers: centers.map(|[v1, v2]| SupportPoint { v: v1 - v2, v1, v2 }),
             first_dir: None,
             settings: SETTINGS,
-            wanted: Wanted {
-                state: true,
-                points: true,
-                pos: true,
-            },
+            want: Want::ALL,
         }
     }
 

@@ -20,6 +20,38 @@ pub struct Settings {
     pub max_iterations: u64,
 }
 
+/// The requested results, besides depth, bounds and directions. A result that is not requested is
+/// zero and costs no support points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Want {
+    /// True to request the contact position. It costs 2 to 4 support points, at most 8 for a face of
+    /// more than four corners, none if a state shows that nothing has moved. May evaluate one shape
+    /// without the other.
+    pub pos: bool,
+    /// True to request the witness points, at no cost.
+    pub points: bool,
+}
+
+impl Want {
+    /// Requests both.
+    pub const ALL: Want = Want {
+        pos: true,
+        points: true,
+    };
+    /// Requests neither.
+    pub const NOTHING: Want = Want {
+        pos: false,
+        points: false,
+    };
+}
+
+impl Default for Want {
+    /// Returns [`Want::ALL`].
+    fn default() -> Self {
+        Want::ALL
+    }
+}
+
 /// The cause of the end of a search, which tells which outputs are valid. The results are as exact as requested only
 /// for [`Status::Converged`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

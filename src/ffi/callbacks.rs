@@ -8,8 +8,8 @@ use core::ffi::{c_ulong, c_void};
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::query::{Pair, Wanted};
-use crate::types::Settings;
+use crate::query::Pair;
+use crate::types::{Settings, Want};
 
 /// An object whose support function is a C callback.
 #[derive(Clone, Copy)]
@@ -143,7 +143,7 @@ impl QueryArgs {
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn pair(&self, kind: QueryKind, wanted: Wanted) -> Option<Pair<Object, Object>> {
+    pub unsafe fn pair(&self, kind: QueryKind, want: Want) -> Option<Pair<Object, Object>> {
         // SAFETY: the caller's guarantees are those of the callee.
         unsafe {
             let (obj1, obj2) = self.objects()?;
@@ -171,7 +171,7 @@ impl QueryArgs {
                     tolerance: f64::INFINITY,
                     max_iterations: ITERATION_CAP,
                 },
-                wanted,
+                want,
             })
         }
     }
@@ -182,7 +182,7 @@ impl QueryArgs {
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn prepare(&self, kind: QueryKind, wanted: Wanted) -> Option<Pair<Object, Object>> {
+    pub unsafe fn prepare(&self, kind: QueryKind, want: Want) -> Option<Pair<Object, Object>> {
         if self.ccd.is_null() {
             return None;
         }
@@ -200,7 +200,7 @@ impl QueryArgs {
                 }
                 tolerance = DEFAULT_TOLERANCE;
             }
-            let pair = self.pair(kind, wanted)?;
+            let pair = self.pair(kind, want)?;
             let max: c_ulong = (*self.ccd).max_iterations;
             #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
             let max_iterations = ITERATION_CAP.min(max as u64);

@@ -4,17 +4,14 @@
 //! Exports libccd's own queries. CCD_INIT's value replaces a tolerance that is negative or NaN.
 
 use core::ffi::{c_int, c_void};
+use core::ptr::null_mut;
 
 use super::callbacks::{QueryArgs, QueryKind};
-use super::run::{libccd_code_of, run_query};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
-use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, write_outputs};
-use crate::math::Real;
-use crate::minkowski::support_query::Stop;
-use crate::query::Wanted;
+use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_penetration};
+use crate::math::{Real, Vec3};
 use crate::solver::Solver;
-use crate::types::Penetration;
 
 /// Reports whether the objects overlap. Starts from the centers, which must lie in their objects.
 ///
@@ -29,7 +26,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     ccd: *const ccd_t,
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, core::ptr::null_mut()) }
+    unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, null_mut()) }
 }
 
 /// Reports whether the objects overlap. Starts from first_dir and calls no center.
@@ -45,7 +42,7 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
 ) -> c_int {
     let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Gjk);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { intersect(args, kind, core::ptr::null_mut()) }
+    unsafe { intersect(args, kind, null_mut()) }
 }
 
 /// Computes penetration depth, direction and contact position. Starts from the centers, which must
@@ -71,25 +68,7 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     pos: *mut ccd_vec3_t,
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, core::ptr::null_mut(), depth, dir, pos) }
-}
-
-/// Computes the global minimum from first_dir.
-///
-/// # Errors
-/// As [`run_query`].
-///
-/// # Safety
-/// As [`run_query`].
-unsafe fn gjk_penetration(args: QueryArgs, wants_pos: bool) -> Result<Penetration, Stop> {
-    let wanted = Wanted {
-        state: false,
-        points: wants_pos,
-        pos: wants_pos,
-    };
-    let (kind, solver) = (QueryKind::Gjk, Solver::Proven);
-    // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { run_query(args, kind, solver, core::ptr::null_mut(), wanted) }
+    unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, null_mut(), depth, dir, pos) }
 }
 
 /// Computes the globally least penetration depth, its direction and the contact position. Starts
@@ -113,13 +92,12 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callees.
-    unsafe {
-        match gjk_penetration(QueryArgs { obj1, obj2, ccd }, !pos.is_null()) {
-            Ok(hit) => write_outputs(&hit, depth, dir, pos),
-            Err(stop) => libccd_code_of(&stop),
-        }
-    }
+    let (args, query) = (
+        QueryArgs { obj1, obj2, ccd },
+        (QueryKind::Gjk, Solver::Proven),
+    );
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { libccd_penetration(args, query, null_mut(), depth, dir, pos) }
 }
 
 /// Computes the shortest translation of obj2 that separates the objects: `sep` = depth * dir, metres;
@@ -131,15 +109,13 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
     ccd: *const ccd_t,
     sep: *mut ccd_vec3_t,
 ) -> c_int {
+    let (mut depth, mut dir) = (0.0, ccd_vec3_t::default());
     // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
-        let hit = match gjk_penetration(QueryArgs { obj1, obj2, ccd }, false) {
-            Ok(hit) => hit,
-            Err(stop) => return libccd_code_of(&stop),
-        };
-        if let Some(sep) = sep.as_mut() {
-            *sep = (hit.dir * hit.depth).into();
+        let code = ccdGJKPenetration(obj1, obj2, ccd, &mut depth, &mut dir, null_mut());
+        if let (0, Some(sep)) = (code, sep.as_mut()) {
+            *sep = (Vec3::from(dir) * f64::from(depth)).into();
         }
+        code
     }
-    0
 }

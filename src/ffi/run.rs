@@ -12,10 +12,10 @@ use super::warm::state::{ccd_warm_t, read, store};
 use crate::minkowski::support::Fault;
 use crate::minkowski::support_query::Stop;
 use crate::minkowski::warm_start::WarmStart;
-use crate::query::{Pair, Wanted};
+use crate::query::Pair;
 use crate::solver::Solver;
 use crate::trace;
-use crate::types::Penetration;
+use crate::types::{Penetration, Want};
 
 /// Returns the extension's code of a query without a result.
 pub fn code_of(stop: &Stop) -> c_int {
@@ -48,11 +48,11 @@ pub unsafe fn run_query(
     kind: QueryKind,
     solver: Solver,
     warm: *mut ccd_warm_t,
-    wanted: Wanted,
+    want: Want,
 ) -> Result<Penetration, Stop> {
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let pair = args.prepare(kind, wanted).ok_or(Fault::BadInput)?;
+        let pair = args.prepare(kind, want).ok_or(Fault::BadInput)?;
         let (mut state, mut buffers) = (read(warm), LargeBuffers::default());
         let mut found = solver.run(&pair, &mut state, &mut buffers);
         buffers.free();

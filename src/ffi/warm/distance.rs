@@ -14,9 +14,8 @@ use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, point_if};
 use super::state::{ccd_warm_t, read, store};
 use crate::math::{Real, lower_to_real};
 use crate::minkowski::support_query::Stop;
-use crate::query::Wanted;
 use crate::query::signed_distance::{Distance, Margins};
-use crate::types::Status;
+use crate::types::{Status, Want};
 
 /// Result of ccdSignedDistance. A field that was not requested is zero.
 #[repr(C)]
@@ -96,15 +95,10 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         margin2: margin2.into(),
         max_distance: max_distance.into(),
     };
-    let wanted = Wanted {
-        state: !warm.is_null(),
-        points: true,
-        pos: false,
-    };
     // SAFETY: the caller's guarantees are those of the callees; [outputs].
     unsafe {
         let args = QueryArgs { obj1, obj2, ccd };
-        let Some(pair) = args.prepare(QueryKind::Distance, wanted) else {
+        let Some(pair) = args.prepare(QueryKind::Distance, Want::NOTHING) else {
             return CCD_BAD_INPUT;
         };
         let (mut state, mut buffers) = (read(warm), LargeBuffers::default());

@@ -9,7 +9,7 @@ use super::super::callbacks::{QueryArgs, QueryKind};
 use super::super::run::complete;
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, read};
-use crate::query::Wanted;
+use crate::types::Want;
 
 /// Tests a pair for overlap with the caller's state. Returns 1 or 0: a fault counts as no overlap.
 ///
@@ -20,14 +20,9 @@ pub(in crate::ffi) unsafe fn intersect(
     kind: QueryKind,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let wanted = Wanted {
-        state: !warm.is_null(),
-        points: false,
-        pos: false,
-    };
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let Some(pair) = args.pair(kind, wanted) else {
+        let Some(pair) = args.pair(kind, Want::NOTHING) else {
             return 0;
         };
         let mut state = read(warm);

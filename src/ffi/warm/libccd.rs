@@ -12,22 +12,32 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::intersect::intersect;
 use super::state::ccd_warm_t;
 use crate::math::Real;
-use crate::query::Wanted;
 use crate::solver::Solver;
-use crate::types::Penetration;
+use crate::types::Want;
 
-/// Writes those outputs of libccd's calls that are not NULL. Returns libccd's code of a hit.
+/// Runs a penetration query of libccd and writes those outputs that are not NULL. Returns libccd's code.
 ///
 /// # Safety
-/// \[outputs\] of the module contract.
-pub(in crate::ffi) unsafe fn write_outputs(
-    hit: &Penetration,
+/// As [`run_query`].
+#[inline(always)]
+pub(in crate::ffi) unsafe fn libccd_penetration(
+    args: QueryArgs,
+    (kind, solver): (QueryKind, Solver),
+    warm: *mut ccd_warm_t,
     depth: *mut Real,
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    // SAFETY: [outputs].
+    let want = Want {
+        pos: !pos.is_null(),
+        points: false,
+    };
+    // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
+        let hit = match run_query(args, kind, solver, warm, want) {
+            Ok(hit) => hit,
+            Err(stop) => return libccd_code_of(&stop),
+        };
         if let Some(depth) = depth.as_mut() {
             *depth = hit.depth as Real;
         }
@@ -60,19 +70,12 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Mpr);
-    let wanted = Wanted {
-        state: !warm.is_null(),
-        points: !pos.is_null(),
-        pos: !pos.is_null(),
-    };
-    // SAFETY: the caller's guarantees are those of the callees.
-    unsafe {
-        match run_query(args, kind, Solver::Global, warm, wanted) {
-            Ok(hit) => write_outputs(&hit, depth, dir, pos),
-            Err(stop) => libccd_code_of(&stop),
-        }
-    }
+    let (args, query) = (
+        QueryArgs { obj1, obj2, ccd },
+        (QueryKind::Mpr, Solver::Global),
+    );
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { libccd_penetration(args, query, warm, depth, dir, pos) }
 }
 
 /// Reports whether the objects overlap as ccdMPRIntersect does, with a state.

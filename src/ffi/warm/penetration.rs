@@ -11,9 +11,8 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT};
 use super::state::ccd_warm_t;
 use crate::math::{Real, Vec3, lower_to_real};
-use crate::query::Wanted;
 use crate::solver::Solver;
-use crate::types::{Penetration, Status};
+use crate::types::{Penetration, Status, Want};
 
 /// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
 /// May call one support function without the other.
@@ -104,10 +103,9 @@ pub(in crate::ffi) unsafe fn fill(
     if out.is_null() || want & !CCD_WANT_ALL != 0 {
         return CCD_BAD_INPUT;
     }
-    let wanted = Wanted {
-        state: !warm.is_null(),
-        points: want != 0,
+    let wanted = Want {
         pos: want & CCD_WANT_POS != 0,
+        points: want & CCD_WANT_POINTS != 0,
     };
     // SAFETY: the caller's guarantees are those of the callee.
     match unsafe { run_query(args, kind, solver, warm, wanted) } {
