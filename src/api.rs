@@ -354,7 +354,7 @@ fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
     let pair = make_pair(a, b, settings)?;
     let found = with_state(warm, |state| {
         let found = solver.run(&pair, state, &mut OwnedBuffers::default());
-        pair.complete(state, &found);
+        state.note_separation(&found);
         if_overlapping(found)
     })?;
     Ok(found.map(|hit| Penetration {
@@ -449,7 +449,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     let pair = make_pair(a, b, &Settings::default())?;
     let overlap = with_state(warm, |state| {
         let found = pair.intersect(state);
-        pair.complete(state, &found);
+        state.note_separation(&found);
         if_overlapping(found)
     })?;
     Ok(overlap.is_some())

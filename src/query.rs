@@ -11,7 +11,8 @@
 //!    e.g. for a thin plate with the object on its far side. The certificate of the global minimum implies the overlap;
 //!    the local search tests its last face; queries without either use [`Pair::prove_overlap`].
 //! 4. *Contact position*: compute the [`contact_position`], or take the middle of the witness points.
-//! 5. *Complete* the state for the next query, if the caller keeps one.
+//! 5. *Note the separation*: if the objects are separated, the state for the next query keeps the axis. That of an
+//!    overlap is set by the solver.
 //!
 //! `include/README.md` has the outputs of each query. All assume valid support functions ([`crate::types`]).
 
@@ -62,25 +63,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             return Err(Stop::Separated(axis.dir));
         }
         Ok(())
-    }
-
-    /// Completes the state for the next query, which a solver has set for an overlap: adds the direction of the centers,
-    /// or makes it that of separated objects.
-    #[inline(always)]
-    pub fn complete<R>(&self, state: &mut WarmStart, found: &Result<R, Stop>) {
-        match found {
-            Ok(_) => {
-                if let Some(centers) = &self.centers {
-                    state.set_center_direction(&centers.v);
-                }
-            }
-            Err(Stop::Separated(dir)) => {
-                let axis = state.separating_axis();
-                let target_separation = axis.map_or(0.0, |axis| axis.target_separation);
-                *state = WarmStart::separated(*dir, target_separation, state.radius);
-            }
-            _ => (),
-        }
     }
 
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else
@@ -177,8 +159,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Runs the local search. Not inlined, so that its stack frame is released before the global search runs.
     #[inline(never)]
     fn descend(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        let is_swapped = self.centers.is_some_and(|c| state.is_swapped(&c.v));
-        let remembered = state.direction().filter(|_| !is_swapped);
+        let remembered = state.direction();
         let start = remembered.unwrap_or_else(|| self.cold_start());
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);

@@ -29,7 +29,7 @@ pub enum Solver {
 }
 
 impl Solver {
-    /// Runs the query from the state of the last one. [`Pair::complete`] is to follow. `arena`: used by
+    /// Runs the query from the state of the last one. [`WarmStart::note_separation`] is to follow. `arena`: used by
     /// [`Solver::Proven`] alone.
     ///
     /// # Errors

@@ -6,13 +6,12 @@
 use core::ffi::c_int;
 
 use super::arena::LargeBuffers;
-use super::callbacks::{Object, QueryArgs, QueryKind};
+use super::callbacks::{QueryArgs, QueryKind};
 use super::warm::codes::{CCD_BAD_INPUT, CCD_MISS, CCD_NO_MEMORY};
 use super::warm::state::{ccd_warm_t, read, store};
 use crate::minkowski::support::Fault;
 use crate::minkowski::support_query::Stop;
 use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
 use crate::solver::Solver;
 use crate::trace;
 use crate::types::{Penetration, Want};
@@ -60,23 +59,18 @@ pub unsafe fn run_query(
             hit.support_points = pair.difference.supports();
         }
         trace::end(found.as_ref().ok());
-        complete(warm, state, &pair, &found);
+        store_state(warm, state, &found);
         found
     }
 }
 
-/// Completes the state after a query of `pair`, and stores it unless there is a fault or `warm` is NULL.
+/// Stores the state after a query unless there is a fault or `warm` is NULL.
 ///
 /// # Safety
 /// \[outputs\] of the module contract.
-pub unsafe fn complete<R>(
-    warm: *mut ccd_warm_t,
-    mut state: WarmStart,
-    pair: &Pair<Object, Object>,
-    found: &Result<R, Stop>,
-) {
+pub unsafe fn store_state<R>(warm: *mut ccd_warm_t, mut state: WarmStart, found: &Result<R, Stop>) {
     if !warm.is_null() && !matches!(found, Err(Stop::Fault(_))) {
-        pair.complete(&mut state, found);
+        state.note_separation(found);
         // SAFETY: the caller's guarantees are those of the callee.
         unsafe { store(warm, &state) };
     }

@@ -11,12 +11,12 @@
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
 //! | `CurvedOverlap` | the direction of the upper bound | the depth | sphere radii or 0 |
 //!
-//! A radius is 0 unless a prediction of the sphere fits was confirmed. The state also holds the direction of
-//! the difference of the centers, rounded, by which a state of the swapped pair is recognised.
+//! A radius is 0 unless a prediction of the sphere fits was confirmed.
 
 use crate::math::{EPSILON, Vec3, ZERO, unit};
 use crate::minkowski::general_position::start_direction;
 use crate::minkowski::separating_axis::SeparatingAxis;
+use crate::minkowski::support_query::Stop;
 
 /// Result of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,38 +44,11 @@ pub struct WarmStart {
     pub radius: [f64; 2],
     /// Result of the last query.
     pub kind: WarmKind,
-    /// Direction of the difference of the centers, packed; 0 without centers.
-    center_direction: u32,
 }
-
-/// Number of bits of a packed coordinate.
-const COORDINATE_BITS: u32 = 10;
-/// The packed value of the coordinate 0.
-const COORDINATE_ZERO: u32 = 1 << (COORDINATE_BITS - 1);
 
 /// The largest error of the squared length of a unit vector. Measured on 50 million vectors that were normalised:
 /// 4 ulps.
 const MAX_UNIT_ERROR: f64 = 4.0 * EPSILON;
-
-/// Packs the direction of a vector into 30 bits; returns 0 for a vector without a direction.
-fn pack_direction(v: &Vec3) -> u32 {
-    let Some(n) = unit(v) else { return 0 };
-    let scale = f64::from(COORDINATE_ZERO - 1);
-    (0..3).fold(0, |packed, i| {
-        // Rounded to the closest integer.
-        let x = (n[i] * scale + f64::from(COORDINATE_ZERO) + 0.5) as u32;
-        packed | x << (COORDINATE_BITS * i as u32)
-    })
-}
-
-/// Unpacks a direction; its length is approximately 511, not 1.
-fn unpack_direction(packed: u32) -> Vec3 {
-    let coordinate = |i: u32| {
-        let x = packed >> (COORDINATE_BITS * i) & (2 * COORDINATE_ZERO - 1);
-        f64::from(x) - f64::from(COORDINATE_ZERO)
-    };
-    Vec3::new(coordinate(0), coordinate(1), coordinate(2))
-}
 
 impl Default for WarmStart {
     fn default() -> Self {
@@ -93,7 +66,6 @@ impl WarmStart {
         depth: 0.0,
         radius: [0.0; 2],
         kind: WarmKind::Cold,
-        center_direction: 0,
     };
 
     /// Makes the state of an overlap with this penetration direction, unit.
@@ -120,7 +92,16 @@ impl WarmStart {
             depth: target_separation,
             radius,
             kind: WarmKind::Separated,
-            center_direction: 0,
+        }
+    }
+
+    /// Makes this the state of separated objects if a query found them separated; solvers set the state of an overlap.
+    #[inline(always)]
+    pub fn note_separation<R>(&mut self, found: &Result<R, Stop>) {
+        if let Err(Stop::Separated(dir)) = found {
+            let axis = self.separating_axis();
+            let target_separation = axis.map_or(0.0, |axis| axis.target_separation);
+            *self = Self::separated(*dir, target_separation, self.radius);
         }
     }
 
@@ -135,19 +116,7 @@ impl WarmStart {
             } else {
                 WarmKind::Overlap
             },
-            center_direction: 0,
         }
-    }
-
-    /// Stores the direction of the difference of the centers.
-    pub fn set_center_direction(&mut self, center: &Vec3) {
-        self.center_direction = pack_direction(center);
-    }
-
-    /// Returns whether the state belongs to the swapped pair: its center direction is opposite to that of
-    /// `center`, the difference of the centers.
-    pub fn is_swapped(&self, center: &Vec3) -> bool {
-        self.center_direction != 0 && unpack_direction(self.center_direction).dot(center) < 0.0
     }
 
     /// Returns whether the objects overlapped.
@@ -174,14 +143,11 @@ impl WarmStart {
         if self.kind != WarmKind::Cold {
             self.dir = -self.dir;
             self.radius.swap(0, 1);
-            if self.center_direction != 0 {
-                self.center_direction = pack_direction(&-unpack_direction(self.center_direction));
-            }
         }
     }
 
     /// Packs the state into plain numbers. A cold state is all zeros.
-    pub fn pack(&self) -> ([f64; Self::REALS], [u32; 2]) {
+    pub fn pack(&self) -> ([f64; Self::REALS], u32) {
         let [x, y, z] = self.dir.into();
         let [radius1, radius2] = self.radius;
         let kind = match self.kind {
@@ -191,13 +157,13 @@ impl WarmStart {
             WarmKind::CurvedOverlap => 3,
         };
         let reals = [x, y, z, self.depth, radius1, radius2];
-        (reals, [kind, self.center_direction])
+        (reals, kind)
     }
 
     /// Unpacks a state; returns a cold one unless the kind is known, the direction unit, and the lengths such that
     /// solvers can multiply four of them. (Support points that are too large for this are a
     /// [`Fault`](crate::minkowski::support::Fault::NonFinite), so only bodies of more than 1e72 m have larger radii.)
-    pub fn unpack(reals: [f64; Self::REALS], [kind, center_direction]: [u32; 2]) -> Self {
+    pub fn unpack(reals: [f64; Self::REALS], kind: u32) -> Self {
         let [x, y, z, depth, radius1, radius2] = reals;
         let dir = Vec3::new(x, y, z);
         let kind = match kind {
@@ -217,7 +183,6 @@ impl WarmStart {
             depth,
             radius: [radius1, radius2],
             kind,
-            center_direction,
         }
     }
 }
@@ -229,10 +194,9 @@ mod tests {
     #[test]
     fn packing_and_unpacking_preserves_a_state() {
         for is_curved in [false, true] {
-            let mut state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5], is_curved);
-            state.set_center_direction(&Vec3::new(3.0, -1.0, 2.0));
-            let (reals, words) = state.pack();
-            let again = WarmStart::unpack(reals, words);
+            let state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5], is_curved);
+            let (reals, kind) = state.pack();
+            let again = WarmStart::unpack(reals, kind);
             assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
             let mut flipped = again;
             flipped.flip();
@@ -243,23 +207,9 @@ mod tests {
     }
 
     #[test]
-    fn state_of_the_swapped_pair_is_recognised() {
-        let mut r = crate::shapes::Random::new(3);
-        for _ in 0..1000 {
-            let n = r.direction();
-            let mut state = WarmStart::towards(Vec3::x());
-            assert!(!state.is_swapped(&n));
-            state.set_center_direction(&(n * 0.001));
-            assert!(!state.is_swapped(&n) && state.is_swapped(&-n));
-            state.flip();
-            assert!(state.is_swapped(&n) && !state.is_swapped(&-n));
-        }
-    }
-
-    #[test]
     fn invalid_numbers_give_a_cold_state() {
         let good = [1.0, 0.0, 0.0, 0.1, 0.0, 0.0];
-        let kind = |reals, kind| WarmStart::unpack(reals, [kind, 0]).kind;
+        let kind = |reals, kind| WarmStart::unpack(reals, kind).kind;
         assert_eq!(kind(good, 2), WarmKind::Overlap);
         assert_eq!(kind(good, 4), WarmKind::Cold);
         assert_eq!(kind([0.0; 6], 0), WarmKind::Cold);

@@ -110,7 +110,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: &mut dyn Arena,
     ) -> Result<Option<Penetration>, Fault> {
         let found = self.proven(state, arena);
-        self.complete(state, &found);
+        state.note_separation(&found);
         if_overlapping(found)
     }
 

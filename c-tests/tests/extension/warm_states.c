@@ -173,11 +173,9 @@ static void run_from_every_state(case_t *c, ccd_warm_t *other, count_t *n)
     answer_t cold = run_judged(c, 0, &warm, "a cold state");
     answer_t x = run_unjudged(c, 0, NULL);
     CHECK(same(&x, &cold), "%s without a state", c->call.name);
-    x = run_judged(c, 1, NULL, "no state, swapped");
+    run_judged(c, 1, NULL, "no state, swapped");
     copy = warm;
-    answer_t y = run_unjudged(c, 1, &copy);
-    if (c->call.call == CALL_LOCAL && x.code == CCD_HIT)
-        CHECK(y.code == CCD_HIT && y.depth - x.depth <= c->criteria.tol, "unflipped: %g, cold %g", y.depth, x.depth);
+    answer_t y = run_judged(c, 1, &copy, "a state of the other order, not flipped");
     if (cold.code == CCD_HIT && c->criteria.truth.lower > 0) {
         n->hits++;
         n->cold += cost(c, 0, &none);

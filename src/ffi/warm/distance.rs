@@ -98,7 +98,11 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
     // SAFETY: the caller's guarantees are those of the callees; [outputs].
     unsafe {
         let args = QueryArgs { obj1, obj2, ccd };
-        let Some(pair) = args.prepare(QueryKind::Distance, Want::NOTHING) else {
+        let wanted = Want {
+            pos: false,
+            points: want & CCD_WANT_POINTS != 0,
+        };
+        let Some(pair) = args.prepare(QueryKind::Distance, wanted) else {
             return CCD_BAD_INPUT;
         };
         let (mut state, mut buffers) = (read(warm), LargeBuffers::default());

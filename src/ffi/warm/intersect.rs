@@ -6,7 +6,7 @@
 use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{QueryArgs, QueryKind};
-use super::super::run::complete;
+use super::super::run::store_state;
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, read};
 use crate::types::Want;
@@ -27,7 +27,7 @@ pub(in crate::ffi) unsafe fn intersect(
         };
         let mut state = read(warm);
         let found = pair.intersect(&mut state);
-        complete(warm, state, &pair, &found);
+        store_state(warm, state, &found);
         c_int::from(found.is_ok())
     }
 }

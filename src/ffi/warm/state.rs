@@ -41,7 +41,7 @@ const _: () = {
 pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
     // SAFETY: [inputs].
     match unsafe { warm.as_ref() } {
-        Some(warm) => WarmStart::unpack(warm.reals, warm.words),
+        Some(warm) => WarmStart::unpack(warm.reals, warm.words[0]),
         None => WarmStart::COLD,
     }
 }
@@ -52,9 +52,14 @@ pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
 /// \[outputs\] of the module contract.
 pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
     if !warm.is_null() {
-        let (reals, words) = state.pack();
+        let (reals, kind) = state.pack();
         // SAFETY: [outputs].
-        unsafe { *warm = ccd_warm_t { reals, words } };
+        unsafe {
+            *warm = ccd_warm_t {
+                reals,
+                words: [kind, 0],
+            };
+        }
     }
 }
 
