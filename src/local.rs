@@ -43,7 +43,7 @@ use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::newton::newton_step;
 use crate::math::{Vec3, larger, lesser, normal, normalise_unscaled, perpendicular};
-use crate::minkowski::sphere_fit::{MIN_CORE_DISTANCE_REL, SphereFit};
+use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
@@ -430,7 +430,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
         let found = self.fit.predict(self.set, &face.corners, &face.normal);
         // Any direction is a minimum of concentric balls.
-        let is_concentric = self.is_centered && self.interior.norm() <= MIN_CORE_DISTANCE_REL * sum;
+        let is_concentric = self.is_centered && self.interior.norm() <= SAME_CENTER_REL * sum;
         let (dir, value) = found.or_else(|| is_concentric.then_some((face.normal, sum)))?;
         let model = Model::Sphere;
         Some(Prediction { model, dir, value })

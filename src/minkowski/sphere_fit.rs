@@ -23,45 +23,21 @@
 //! [`SphereFit::tilted_from_lowest`] must be evaluated; the support value decides.
 
 use crate::geometry::barycentric;
-use crate::math::{Vec3, lesser, normalise_unscaled};
+use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{
-    MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_RING_K, MIN_SAMPLES, SMALL_PART,
-};
+use crate::minkowski::tuning::{MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_SAMPLES, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// The differences allowed between two samples of one sphere.
-struct FitTolerance {
-    /// The largest relative difference of e and f.
-    relative: f64,
-    /// The least squared cosine between the change of direction and the change of vertex.
-    cos2: f64,
-}
-
-/// The tolerance of fits that only choose directions. Insensitive: a relative difference of 0.02 to 0.1.
-const LOOSE: FitTolerance = FitTolerance {
-    relative: 0.03,
-    cos2: 0.999,
-};
-/// The tolerance of fits whose prediction may be a result: far above the rounding error of the callbacks.
-const EXACT: FitTolerance = if cfg!(feature = "single") {
-    FitTolerance {
-        relative: 3e-4,
-        cos2: 1.0 - 1e-5,
-    }
-} else {
-    FitTolerance {
-        relative: 1e-6,
-        cos2: 1.0 - 1e-9,
-    }
-};
-/// The largest distance of two estimates of a center in an exact fit, in radii.
-const EXACT_CENTER_REL: f64 = 1.0 - EXACT.cos2;
+/// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
+/// change of vertex, of two samples of one sphere in fits that only choose directions. Insensitive: 0.02 to 0.1.
+const LOOSE_REL_TOL: f64 = 0.03;
+/// The same in exact fits, whose prediction may be a result: far above the rounding error of the callbacks.
+const EXACT_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
+/// The distance up to which two points of exact fits, or the core and the origin, coincide, in radii.
+pub const SAME_CENTER_REL: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-5 };
 /// The least squared angle, radians, between two samples from which a radius or a curvature is computed.
 pub const MIN_ANGLE2: f64 = 1e-10;
-/// The distance of the core from the origin up to which it counts as rounding, in radii.
-pub const MIN_CORE_DISTANCE_REL: f64 = 1e-9;
 
 /// The source of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,7 +119,11 @@ impl SphereFit {
     /// Compares the new entries of the set with the sample of the upper bound. An exact fit compares each with the
     /// previous entry too. If an object has several spheres, the one of the upper bound is taken.
     pub fn update<const N: usize>(&mut self, set: &VertexSet<N>, upper: &SupportPlane) {
-        let tolerance = if self.is_exact { &EXACT } else { &LOOSE };
+        let tolerance = if self.is_exact {
+            EXACT_REL_TOL
+        } else {
+            LOOSE_REL_TOL
+        };
         let lowest = FitSample::of_upper(upper);
         while self.compared < set.len() {
             let i = self.compared;
@@ -226,7 +206,7 @@ impl SphereFit {
         let closest = barycentric::triangle(&Vec3::zeros(), &a, &b, &c);
         let foot = closest.point;
         let distance = foot.norm();
-        if !(distance > MIN_CORE_DISTANCE_REL * rho) {
+        if !(distance > SAME_CENTER_REL * rho) {
             return None;
         }
         let dir = foot / distance;
@@ -239,8 +219,7 @@ impl SphereFit {
     }
 
     /// Returns the direction of the upper bound, `lowest`, tilted towards the unit normal of a face; `None` if the
-    /// angle to the normal is less than 1.5 times the tilt or more than 60°, or if there is a first ring and k is less
-    /// than [`MIN_RING_K`].
+    /// angle to the normal is less than 1.5 times the tilt or more than 60°.
     ///
     /// On a sphere of radius ρ, with the origin at the distance e = ρ − upper from its center, a chord between the
     /// angles α and γ from `lowest` is at least as far from the origin as the upper bound if
@@ -275,7 +254,7 @@ impl SphereFit {
         // Faces as wide as the first ring are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
         let tilt = (ratio * least).max(first);
-        if !(sine > 1.5 * tilt) || along < 0.5 || k < MIN_RING_K && least > 0.5 * first {
+        if !(sine > 1.5 * tilt) || along < 0.5 {
             return None;
         }
         let dir = lowest + perpendicular * (tilt / sine);
@@ -343,7 +322,7 @@ impl SphereFit {
         samples: &[FitSample; 2],
         tolerance: f64,
     ) -> bool {
-        let max_distance = lesser(EXACT_CENTER_REL * self.sum(), tolerance);
+        let max_distance = lesser(SAME_CENTER_REL * self.sum(), tolerance);
         (samples.iter().zip(self.radius).enumerate()).all(|(object, (sample, radius))| {
             let confirms = |k: usize| {
                 let other = FitSample::of_entry(set, k);
@@ -399,7 +378,7 @@ impl SphereFit {
 
 /// Returns the radii of the spheres of obj1 and obj2 on which two samples lie; 0 for an object without one.
 #[inline(always)]
-fn fit_radii(first: &FitSample, second: &FitSample, tolerance: &FitTolerance) -> [f64; 2] {
+fn fit_radii(first: &FitSample, second: &FitSample, tolerance: f64) -> [f64; 2] {
     // e + f and e − f are the products of the change of vertex with these two.
     let (turn, sum) = (second.dir - first.dir, second.dir + first.dir);
     let turn2 = turn.norm_squared();
@@ -413,15 +392,16 @@ fn fit_radii(first: &FitSample, second: &FitSample, tolerance: &FitTolerance) ->
         }
     }
     let mut radii = [0.0; 2];
+    let min_cos2 = 1.0 - tolerance * tolerance;
     for lane in 0..2 {
-        let is_parallel = along[lane] * along[lane] > tolerance.cos2 * turn2 * length2[lane];
-        if !(is_parallel && along[lane] > 1e-9 * turn2 && turn2 > MIN_ANGLE2) {
+        let is_parallel = along[lane] * along[lane] > min_cos2 * turn2 * length2[lane];
+        if !(is_parallel && along[lane] > 0.0 && turn2 > MIN_ANGLE2) {
             continue;
         }
         let off = (0..3).fold(0.0, |off, axis| {
             off + sum[axis] * (to[axis][lane] - from[axis][lane])
         });
-        if off.abs() <= tolerance.relative * along[lane] {
+        if off.abs() <= tolerance * along[lane] {
             radii[lane] = along[lane] / turn2;
         }
     }
@@ -476,7 +456,6 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
     use crate::minkowski::support::MinkowskiDifference;
     use crate::shapes::{Random, Shape, ball, corners, difference, hull};
 

@@ -19,10 +19,6 @@ pub const MIN_SAMPLES: usize = 4;
 /// searches take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends
 /// at the support limit.
 pub const MAX_FAILED_PREDICTIONS: u32 = 5;
-/// The least k = sqrt(1 − upper / ρ) for which a second ring of directions is evaluated around the best one. Below it
-/// the second ring is at most three times as wide as the first; EPA's face normals give such a ring. Without the
-/// limit proofs of category AXIS end at the support limit. Insensitive: 0.33 to 0.6.
-pub const MIN_RING_K: f64 = 0.5;
 /// The largest ratio of the widths of two rings. Measured: without it 11 % more support points in proofs to 1e-10 m
 /// of shallow round pairs.
 pub const MAX_RING_RATIO: f64 = 100.0;
