@@ -47,7 +47,7 @@ use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, EQUAL_LEVEL, MAX_FAILED_PREDICTIONS,
+    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, LARGE_PART, MAX_FAILED_PREDICTIONS,
     MIN_LENGTH_REL, SAME_VALLEY_COS, SMALL_PART, SPHERE_TILT_RAD,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
@@ -386,7 +386,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<Step> {
         let upper = &self.query.upper;
         let angle2 = 2.0 * (1.0 - face.normal.dot(&upper.dir));
-        if is_inside && (face.offset - upper.depth).abs() <= EQUAL_LEVEL * tolerance {
+        if is_inside && (face.offset - upper.depth).abs() <= LARGE_PART * tolerance {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
@@ -449,7 +449,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether the upper bound is `value`, metres.
     fn equals_upper_bound(&self, value: f64, tolerance: f64) -> bool {
-        (value - self.query.upper.depth).abs() <= EQUAL_LEVEL * tolerance
+        (value - self.query.upper.depth).abs() <= LARGE_PART * tolerance
     }
 
     /// Returns whether a prediction is the upper bound, and the model's witness points coincide after obj2 is moved by
@@ -460,8 +460,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let is_coincident = match prediction.model {
             Model::Sphere => {
                 let off = (self.fit.sum() - depth).powi(2);
-                turn2 * self.fit.sum() <= EQUAL_LEVEL * tolerance
-                    && turn2 * off <= depth * tolerance
+                turn2 * self.fit.sum() <= LARGE_PART * tolerance && turn2 * off <= depth * tolerance
             }
             Model::Smooth(_) => self.vertices_coincide(tolerance),
         };
@@ -485,7 +484,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether a prediction that came true with the support value `h`, metres, is a candidate.
     fn is_minimum(&self, prediction: &Prediction, h: f64, tolerance: f64) -> bool {
-        (h - prediction.value).abs() <= EQUAL_LEVEL * tolerance
+        (h - prediction.value).abs() <= LARGE_PART * tolerance
             && (prediction.model == Model::Sphere || self.vertices_coincide(tolerance))
     }
 

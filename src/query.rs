@@ -167,7 +167,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let is_remembered = remembered.is_some();
         let mut hit =
             local::penetration(&mut query, &mut set, &start, is_remembered, &self.settings)?;
-        *state = WarmStart::hit(hit.dir, hit.depth, [0.0; 2], false);
+        *state = WarmStart::hit(hit.dir, hit.depth, [0.0; 2]);
         if hit.status == Status::Converged && self.want.pos {
             hit.pos = self.contact_position(&set, &hit)?;
         }
@@ -241,7 +241,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Penetration, Stop> {
         let ray = self.cold_start();
-        let is_remembered = state.kind == WarmKind::Overlap;
+        let is_remembered = state.is_overlap();
         let dir = if is_remembered { state.dir } else { ray };
         let mut query = SupportQuery::new(&self.difference, interior, limits.gap.tolerance);
         // Most queries of separated objects end here, before the request is made.

@@ -8,7 +8,7 @@
 //! 1. Find the closest face. Its distance, less the error, is the lower bound of the depth. If the origin is inside
 //!    and the gap to the upper bound is allowed, the loop has converged.
 //! 2. Insert the known difference farthest along the face's normal, without a callback, if it closes at least
-//!    [`INSERT_GAIN_REL`] of the gap between the face and the upper bound.
+//!    [`LARGE_PART`] of the gap between the face and the upper bound.
 //! 3. Otherwise evaluate the callbacks, along the face's normal or along a direction that a sphere fit suggests
 //!    ([`evaluate_beyond`]). Insert the point if it is above the face.
 //! 4. If no point above the face is found along its normal, the support value may lower the upper bound. If it does
@@ -27,7 +27,7 @@ use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
-use crate::minkowski::tuning::INSERT_GAIN_REL;
+use crate::minkowski::tuning::LARGE_PART;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::is_shallow;
 use crate::trace;
@@ -127,8 +127,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let mut w = set.farthest_vertex(&normal);
         let height = normal.dot(&w.w) - offset;
         let distance = closest.key.sqrt();
-        let is_gain = !(closest.key > 0.0)
-            || height * distance > INSERT_GAIN_REL * (upper - distance) * offset;
+        let is_gain =
+            !(closest.key > 0.0) || height * distance > LARGE_PART * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
         let has_room = has_larger || surface.corners.room() > N - set.len();
         if !(height > level && is_gain && has_room) {

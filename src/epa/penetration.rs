@@ -42,9 +42,8 @@ use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::MAX_POLYHEDRON_ITERATIONS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
-use crate::minkowski::warm_start::{WarmKind, WarmStart};
+use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{discover, refine};
 use crate::trace;
 use crate::types::{Penetration, Status};
@@ -124,7 +123,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
 ) -> Result<(Penetration, WarmStart), Stop> {
     set.push(&query.upper.dir, first);
     let warm = &request.warm;
-    let is_warm = warm.kind == WarmKind::Overlap;
+    let is_warm = warm.is_overlap();
     // The ray is evaluated too if the warm direction is only a guess (its depth is 0), or if both objects are round, where
     // its vertex is a poor corner of a portal.
     let is_round = warm.radius[0] * warm.radius[1] > 0.0;
@@ -162,7 +161,6 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         (lower, status) = (0.0, Status::InconsistentSupport);
     }
     let radius = solver.fit.confirmed_radius();
-    let is_round = solver.iterations > MAX_POLYHEDRON_ITERATIONS;
     let hit = Penetration {
         depth,
         depth_lower: lower.min(depth),
@@ -174,7 +172,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         status,
         ..Penetration::default()
     };
-    Ok((hit, WarmStart::hit(dir, depth, radius, is_round)))
+    Ok((hit, WarmStart::hit(dir, depth, radius)))
 }
 
 impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {

@@ -11,7 +11,7 @@
 //!    the support point of the upper bound. Smooth: the distances e and f of two support points below each other's
 //!    support planes ([`sphere_fit`](crate::minkowski::sphere_fit)) agree within [`SMOOTH_REL_TOL`].
 //! 3. *Step*: to the minimum of the quadratic model; none if it has no minimum, or if the tangent of the step's angle
-//!    is larger than [`MAX_NEWTON_TAN`].
+//!    is larger than [`MAX_TILT_TAN`].
 //!
 //! Outputs. The step is a direction to evaluate; it proves nothing.
 
@@ -22,7 +22,7 @@ use crate::math::{Vec3, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::MIN_ANGLE2;
 use crate::minkowski::support_query::SupportPlane;
 use crate::minkowski::tuning::{
-    MAX_NEWTON_TAN, MIN_DETERMINANT_REL, MIN_NEWTON_WIDTH2, SMOOTH_REL_TOL,
+    MAX_TILT_TAN, MIN_DETERMINANT_REL, MIN_NEWTON_WIDTH2, SMOOTH_REL_TOL,
 };
 use crate::minkowski::vertex_set::VertexSet;
 
@@ -62,7 +62,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
     let g = tangent(&at);
     let x = -(hessian.try_inverse()? * g);
     let x2 = x.norm_squared();
-    if !(x2 < MAX_NEWTON_TAN * MAX_NEWTON_TAN) {
+    if !(x2 < MAX_TILT_TAN * MAX_TILT_TAN) {
         return None;
     }
     let value = (h + g.dot(&x) + 0.5 * x.dot(&(curvature * x))) / (1.0 + x2).sqrt();
@@ -82,7 +82,7 @@ fn closest_entry<const N: usize>(
     upper: &SupportPlane,
     is_accepted: impl Fn(usize) -> bool,
 ) -> Option<usize> {
-    let mut best = (None, 1.0 / (1.0 + MAX_NEWTON_TAN * MAX_NEWTON_TAN).sqrt());
+    let mut best = (None, 1.0 / (1.0 + MAX_TILT_TAN * MAX_TILT_TAN).sqrt());
     for k in 0..set.len() {
         let cosine = set.dir(k).dot(&upper.dir);
         let is_near = cosine > best.1 && cosine < 1.0 - 0.5 * MIN_ANGLE2;

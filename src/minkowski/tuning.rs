@@ -9,8 +9,18 @@
 /// support call, a prediction that gains less is not evaluated, and one that misses its gain by less agrees. Measured:
 /// 0.2 to 0.5 differ by 1.5 %; predictions that gain less cost 7 % of the support points of proofs.
 pub const SMALL_PART: f64 = 0.25;
+/// The part that counts as most of it: a known difference that closes this much of the gap between the closest face and
+/// the upper bound is inserted into the polytope without a support call, and two depths of a local search that differ by
+/// less than this part of the tolerance are equal. The rest is for the error of the witness points. Insensitive: 0.45 to
+/// 0.8; without it deep boxes take 50 % more instructions.
+pub const LARGE_PART: f64 = 0.75;
 
-// Sphere fits.
+// Models of D.
+
+/// The largest tangent of the angle over which D is extrapolated: from the normal of the best plane to a direction that
+/// GJK evaluates, and in a Newton step. Insensitive: 0.5 to 0.8; without a limit GJK takes 12 % more
+/// support points.
+pub const MAX_TILT_TAN: f64 = 0.6;
 
 /// The number of support points before fits are made. Measured: without it 3 % more instructions for recorded hits,
 /// and as many support points.
@@ -63,18 +73,6 @@ pub const MIN_CHORD_FRACTION: f64 = 0.25;
 /// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
 /// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided.
 pub const GENERIC_FRACTION: f64 = 0.44;
-/// Largest tangent of the angle between a queried direction and the normal of the best plane. Measured on nine
-/// sets of pairs: 12 % more support points without the limit; insensitive from 0.5 to 0.8.
-pub const MAX_GJK_TILT_TAN: f64 = 0.6;
-
-// The polytope.
-
-/// The fraction of the gap between the closest face and the upper bound that a known difference must close to
-/// be inserted without a support call. Measured: equal from 0.45 to 0.8; without it, later insertions enclose most of
-/// the inserted points of deep pairs (boxes: 19.7k instead of 12.7k instructions).
-pub const INSERT_GAIN_REL: f64 = 0.6;
-/// The number of iterations above which D counts as curved at the minimum ([`CurvedOverlap`](crate::minkowski::warm_start::WarmKind::CurvedOverlap)).
-pub const MAX_POLYHEDRON_ITERATIONS: u64 = 3;
 
 // The local search.
 
@@ -91,17 +89,11 @@ pub const CONFIRM_NEAR_COS: f64 = 0.6;
 /// valley: 11 degrees. Measured on hulls, started 5 degrees from a minimum: with 0.9 2.2 % of the pairs end in another
 /// minimum, with 0.98 1.0 %.
 pub const SAME_VALLEY_COS: f64 = 0.98;
-/// The difference, in tolerances, up to which two depths count as equal. The rest is reserved for the error of the
-/// witness points.
-pub const EQUAL_LEVEL: f64 = 0.8;
 /// The least length of the ray in D that is assumed in portal discovery, in sizes.
 pub const MIN_LENGTH_REL: f64 = 0.1;
 
 // Newton's step.
 
-/// The largest tangent of the angle of Newton's step, and of the angle between the directions of the upper bound and
-/// of the entries from which the Hessian is computed.
-pub const MAX_NEWTON_TAN: f64 = 0.4;
 /// The least squared sine between the changes of direction of the two entries.
 pub const MIN_NEWTON_WIDTH2: f64 = 0.1;
 /// The least determinant of a Hessian with a minimum, in products of its diagonal.

@@ -9,7 +9,6 @@
 //! | `Cold` | zero | 0 | 0 |
 //! | `Separated` | the separating axis | the target separation ([`crate::minkowski::separating_axis`]) | sphere radii or 0 |
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
-//! | `CurvedOverlap` | the direction of the upper bound | the depth | sphere radii or 0 |
 //!
 //! A radius is 0 unless a prediction of the sphere fits was confirmed.
 
@@ -28,9 +27,6 @@ pub enum WarmKind {
     Separated,
     /// The objects overlapped: the direction is that of the upper bound, or a guess.
     Overlap,
-    /// Overlap of curved surfaces: the next query starts along the centers, not along the direction, whose vertex
-    /// is a poor corner of a portal.
-    CurvedOverlap,
 }
 
 /// The warm start state of a pair.
@@ -105,23 +101,19 @@ impl WarmStart {
         }
     }
 
-    /// Makes the state of a hit. `is_curved`: D is curved there.
-    pub fn hit(dir: Vec3, depth: f64, radius: [f64; 2], is_curved: bool) -> Self {
+    /// Makes the state of a hit.
+    pub fn hit(dir: Vec3, depth: f64, radius: [f64; 2]) -> Self {
         Self {
             dir,
             depth,
             radius,
-            kind: if is_curved {
-                WarmKind::CurvedOverlap
-            } else {
-                WarmKind::Overlap
-            },
+            kind: WarmKind::Overlap,
         }
     }
 
     /// Returns whether the objects overlapped.
     pub fn is_overlap(&self) -> bool {
-        matches!(self.kind, WarmKind::Overlap | WarmKind::CurvedOverlap)
+        self.kind == WarmKind::Overlap
     }
 
     /// Returns the separating axis; `None` if the objects were not separated.
@@ -154,7 +146,6 @@ impl WarmStart {
             WarmKind::Cold => 0,
             WarmKind::Separated => 1,
             WarmKind::Overlap => 2,
-            WarmKind::CurvedOverlap => 3,
         };
         let reals = [x, y, z, self.depth, radius1, radius2];
         (reals, kind)
@@ -169,7 +160,6 @@ impl WarmStart {
         let kind = match kind {
             1 => WarmKind::Separated,
             2 => WarmKind::Overlap,
-            3 => WarmKind::CurvedOverlap,
             _ => WarmKind::Cold,
         };
         let is_unit = (dir.norm_squared() - 1.0).abs() <= MAX_UNIT_ERROR;
@@ -193,17 +183,15 @@ mod tests {
 
     #[test]
     fn packing_and_unpacking_preserves_a_state() {
-        for is_curved in [false, true] {
-            let state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5], is_curved);
-            let (reals, kind) = state.pack();
-            let again = WarmStart::unpack(reals, kind);
-            assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
-            let mut flipped = again;
-            flipped.flip();
-            assert_eq!((flipped.dir, flipped.radius), (-state.dir, [0.5, 1.0]));
-            flipped.flip();
-            assert_eq!(flipped.pack(), state.pack());
-        }
+        let state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5]);
+        let (reals, kind) = state.pack();
+        let again = WarmStart::unpack(reals, kind);
+        assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
+        let mut flipped = again;
+        flipped.flip();
+        assert_eq!((flipped.dir, flipped.radius), (-state.dir, [0.5, 1.0]));
+        flipped.flip();
+        assert_eq!(flipped.pack(), state.pack());
     }
 
     #[test]
@@ -211,7 +199,7 @@ mod tests {
         let good = [1.0, 0.0, 0.0, 0.1, 0.0, 0.0];
         let kind = |reals, kind| WarmStart::unpack(reals, kind).kind;
         assert_eq!(kind(good, 2), WarmKind::Overlap);
-        assert_eq!(kind(good, 4), WarmKind::Cold);
+        assert_eq!(kind(good, 3), WarmKind::Cold);
         assert_eq!(kind([0.0; 6], 0), WarmKind::Cold);
         for (i, x) in [
             (0, 2.0),
