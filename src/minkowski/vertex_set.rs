@@ -63,6 +63,7 @@ impl<const N: usize> VertexSet<N> {
     };
     /// The low bits of a dot product that are replaced by the index of its vertex.
     const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
+    const TAG_MASK: u64 = Self::INDEX_MASK | Self::INDEX_MARK;
     /// The bit above the index, which is always set, so that no tagged product is ±0: codegen, see README.
     const INDEX_MARK: u64 = N.next_power_of_two() as u64;
 
@@ -218,16 +219,15 @@ impl<const N: usize> VertexSet<N> {
         }
         let [x, y, z] = &self.coords;
         let mut best = [f64::NEG_INFINITY; 2];
-        let mut index = [0; 2];
+        let mut tag = [Self::INDEX_MARK; 2];
         // codegen: see README.
         let step = core::hint::black_box(&[1, 1]);
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
                 let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
-                let tag = Self::INDEX_MARK | index[lane];
-                let h = f64::from_bits(h.to_bits() & !Self::INDEX_MASK | tag) + 0.0;
+                let h = f64::from_bits(h.to_bits() & !Self::TAG_MASK | tag[lane]);
                 best[lane] = larger(best[lane], h);
-                index[lane] += step[lane];
+                tag[lane] += step[lane];
             }
         }
         let [a, b] = best.map(|h| (h.to_bits() & Self::INDEX_MASK) as u16);
