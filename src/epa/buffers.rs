@@ -47,7 +47,7 @@ pub const START_VERTICES: usize = 4;
 /// Returns the number of faces for C corners: a closed surface has 2 C − 4 faces, and an insertion makes the new faces
 /// before it frees the old ones.
 const fn max_faces(corners: usize) -> usize {
-    (2 * corners).next_multiple_of(8)
+    (2 * corners).next_multiple_of(16)
 }
 
 const _: () = assert!(LARGE_CORNERS > LARGE_VERTICES);

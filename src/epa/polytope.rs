@@ -147,7 +147,7 @@ impl<const F: usize> EpaPolytope<F> {
 
     #[inline(always)]
     fn in_range(i: usize) -> usize {
-        const { assert!(F % 8 == 0 && F >= 8 && F <= MAX_FACES) };
+        const { assert!(F % 16 == 0 && F >= 16 && F <= MAX_FACES) };
         if F.is_power_of_two() {
             i & (F - 1)
         } else {
@@ -322,10 +322,10 @@ impl<const F: usize> EpaPolytope<F> {
     #[inline(always)]
     pub fn closest_face(&self) -> ClosestFace {
         let mut least = [f64::INFINITY; 8];
-        let last = Self::in_range(self.used.wrapping_sub(1)) | 7;
-        for row in self.keys[..=last].chunks_exact(8) {
-            for (a, b) in least.iter_mut().zip(row) {
-                *a = lesser(*a, *b);
+        let last = Self::in_range(self.used.wrapping_sub(1)) | 15;
+        for row in self.keys[..=last].chunks_exact(16) {
+            for (i, a) in least.iter_mut().enumerate() {
+                *a = lesser(*a, lesser(row[i], row[i + 8]));
             }
         }
         let [a, b, c, d, e, f, g, h] = least;
