@@ -39,9 +39,8 @@
 //!
 //! - *Cancelled normals.* Between nearly opposite normals |N′| is nearly 0. The plane is then computed from
 //!   its corners ([`EpaPolytope::recompute_plane`]). Since it has none of the inherited properties, it is used only if
-//!   its normal is on the side of N′, the interior point is below it, and d > 0 if that holds for F′. Otherwise F′ is
-//!   normalised, which scales the error; or, if F′ is mostly rounding, the new face has F's plane, which its corners
-//!   are on or above.
+//!   the interior point is below it, and d > 0 if that holds for F′. Otherwise F′ is normalised, which scales the
+//!   error; or, if F′ is mostly rounding, the new face has F's plane, which its corners are on or above.
 //! - *The horizon is not a single closed loop*, because of rounding. The insertion is reverted, and repeated with
 //!   fewer visible faces ([`EpaPolytope::insert`]). With only the first face the horizon is always its three edges.
 //!
@@ -59,23 +58,17 @@ const STACK_BOTTOM: u16 = u16::MAX;
 /// The steps to the next and the previous half-edge of a face, for each edge.
 const NEXT: [i8; 4] = [1, 1, -2, 0];
 const PREVIOUS: [i8; 4] = [2, -1, -1, 0];
-/// The low bits of a key, which hold the index of its face. They change the distance that a key stands for by 5e-13,
-/// relatively; this affects only the order of the faces.
-const INDEX_MASK: u64 = 0xfff;
-/// An upper bound of the relative error of a distance that is caused by the index bits of its key.
-const KEY_ERROR_REL: f64 = 1e-12;
-/// The largest number of faces whose indices fit in a key.
+/// The largest number of faces: the low bits of a key hold the index of its face.
 pub const MAX_FACES: usize = 4096;
-/// The |N|² below which an interpolated plane has lost a decimal digit and is computed from its corners. Derived: above
-/// it the error is at most ten times that of the two parents.
-const MIN_INTERPOLATED_N2: f64 = 0.01;
-/// The |N|² below which an interpolated plane is not usable: two more digits are lost.
-const MIN_USABLE_N2: f64 = 1e-6;
-/// The largest error up to which a plane may be normalised, in ulps of the size. Insensitive, 1e4 to 1e6 on the
-/// recorded contacts: far below the tolerances at which interpolated planes are used.
-const MAX_SCALED_ERROR_ULPS: f64 = 1e5;
+const INDEX_MASK: u64 = MAX_FACES as u64 - 1;
+/// An upper bound of the relative error of a key that is caused by the index bits. It affects the order of the faces,
+/// not their planes.
+const KEY_ERROR_REL: f64 = MAX_FACES as f64 * f64::EPSILON;
+/// The |N|² below which an interpolated plane has lost a decimal digit and is computed from its corners: above it the
+/// error is at most ten times that of the two parents. Below its square, another digit, the plane is not usable.
+const MIN_N2: f64 = 0.01;
 /// The error that an insertion adds, in ulps of the size. Derived: two products and their sum round to 2 ulps of the
-/// size, which is ten times as much for |N| = 0.1.
+/// size, which is ten times as much for the least |N|.
 const INSERTION_ERROR_ULPS: f64 = 20.0;
 
 /// A polytope with room for `F` faces, whose corners have indices below 32768.
@@ -114,7 +107,7 @@ pub struct EpaPolytope<const F: usize> {
 pub struct ClosestFace {
     /// The index of the face.
     pub face: usize,
-    /// Its key, d|d| / |N|² with a relative error of at most 1e-12.
+    /// Its key, d|d| / |N|² with a relative error of at most [`KEY_ERROR_REL`].
     pub key: f64,
 }
 
@@ -268,7 +261,7 @@ impl<const F: usize> EpaPolytope<F> {
         (self.min_n2, self.key_error) = if is_exact {
             (f64::INFINITY, 0.0)
         } else {
-            (MIN_INTERPOLATED_N2, KEY_ERROR_REL)
+            (MIN_N2, KEY_ERROR_REL)
         };
     }
 
@@ -304,7 +297,7 @@ impl<const F: usize> EpaPolytope<F> {
 
     /// Returns the proven lower bound of the distance from the origin to all faces, metres.
     pub fn lower_bound(&self, closest: &ClosestFace) -> f64 {
-        let max_key = closest.key + 4.0 * KEY_ERROR_REL * closest.key.abs();
+        let max_key = closest.key + 2.0 * KEY_ERROR_REL * closest.key.abs();
         let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= max_key);
         tied.fold(f64::INFINITY, |least, f| lesser(self.distance(f), least))
     }
@@ -548,20 +541,17 @@ impl<const F: usize> EpaPolytope<F> {
     fn recompute_plane(&mut self, f: usize, parent: usize, corner: &impl Fn(usize) -> Vec3) -> f64 {
         let f = Self::in_range(f);
         let (old, parent) = (self.plane(f), self.plane(parent));
-        let (square, n2) = old.signed_square();
-        // The side and the sign of d are unknown for an unusable plane: the parent's sign is used.
-        let is_side_known = n2 > MIN_USABLE_N2;
-        let reference = if is_side_known { &old } else { &parent };
-        let plane = match self.plane_through_corners(f, reference, is_side_known, corner) {
+        let (_, n2) = old.signed_square();
+        let plane = match self.plane_through_corners(f, old.offset() > 0.0, corner) {
             Some((plane, interior_clearance)) => {
                 self.interior_clearance = lesser(interior_clearance, self.interior_clearance);
                 plane
             }
-            None if n2 >= MIN_INTERPOLATED_N2 => {
+            None if n2 >= MIN_N2 => {
                 self.error += INSERTION_ERROR_ULPS * self.ulp;
-                return square;
+                old
             }
-            None if is_side_known && self.error <= MAX_SCALED_ERROR_ULPS * self.ulp * n2.sqrt() => {
+            None if n2 > MIN_N2 * MIN_N2 => {
                 let k = 1.0 / n2.sqrt();
                 self.error *= k;
                 old.scaled(k)
@@ -574,13 +564,12 @@ impl<const F: usize> EpaPolytope<F> {
     }
 
     /// Returns the plane through a face's corners and the distance of the interior point below it, metres. `None` if
-    /// the face has no area above rounding, if the interior point is not below the plane, if the origin is not below
-    /// the plane although it is below `old`, or if the normal is not on the side of `old`'s and that side is known.
+    /// the face has no area above rounding, if the interior point is not below the plane, or if the origin is not
+    /// below the plane although it must be (`is_inside`).
     fn plane_through_corners(
         &self,
         f: usize,
-        old: &Plane,
-        is_side_known: bool,
+        is_inside: bool,
         corner: &impl Fn(usize) -> Vec3,
     ) -> Option<(Plane, f64)> {
         let [a, b, p] = self.corners(f).map(corner);
@@ -594,9 +583,8 @@ impl<const F: usize> EpaPolytope<F> {
         let n = n / n2.sqrt();
         let d = lesser(lesser(n.dot(&a), n.dot(&b)), n.dot(&p));
         let interior_clearance = d - n.dot(&self.interior);
-        let is_valid = (!is_side_known || n.dot(&old.normal()) > 0.0)
-            && interior_clearance >= larger(PLANE_ERROR_ULPS * self.ulp, self.error)
-            && (d > 0.0 || !(old.offset() > 0.0));
+        let is_valid = interior_clearance >= larger(PLANE_ERROR_ULPS * self.ulp, self.error)
+            && (d > 0.0 || !is_inside);
         is_valid.then(|| (Plane::new(&n, d), interior_clearance))
     }
 }
