@@ -29,19 +29,18 @@ pub const SMALL_VERTICES: usize = 24;
 const SMALL_CORNERS: usize = 32;
 const SMALL_FACES: usize = max_faces(SMALL_CORNERS);
 /// The number of vertices of the large buffers, on the stack.
-pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + SPARE_VERTICES;
+pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + START_VERTICES;
 /// The number of faces of the large buffers: what 44 KB of stack leave (test `costs`).
 const LARGE_FACES: usize = 352;
 /// The number of corners that these faces are enough for: a closed surface of C corners has 2 C − 4 faces, and an insertion
 /// makes a few new faces before it frees the old ones. The corners above the number of vertices are known differences.
 const LARGE_CORNERS: usize = LARGE_FACES / 2 - 2;
 /// The number of vertices of the buffers of an [`Arena`].
-const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + SPARE_VERTICES;
+const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + START_VERTICES;
 const ARENA_CORNERS: usize = 2 * ARENA_VERTICES;
 const ARENA_FACES: usize = max_faces(ARENA_CORNERS);
-/// The room for support points above the limit, which applies only while the origin is inside the polytope.
-const SPARE_VERTICES: usize = 4;
-/// The number of entries that a start of the polytope adds to the vertex set: the corners of a tetrahedron.
+/// The number of entries that a start of the polytope adds to the vertex set: the corners of a tetrahedron. So much room
+/// is kept above the limit of support points too, which applies only while the origin is inside the polytope.
 pub const START_VERTICES: usize = 4;
 
 /// Returns the number of faces for C corners: a closed surface has 2 C − 4 faces, and an insertion makes the new faces
