@@ -68,14 +68,6 @@ pub struct EpaRequest<'a> {
     pub wants_points: bool,
 }
 
-/// Result of the search without a polytope.
-enum PortalEnd {
-    /// The minimum is proven.
-    Certified,
-    /// The minimum is not proven; the portal, if one was found. (A tuple of status and portal costs 80 instructions more.)
-    Open(Option<[Vertex; 3]>),
-}
-
 /// The bounds and the witness points of the polytope or portal with the least gap so far.
 #[derive(Clone, Copy)]
 struct Proof {
@@ -183,18 +175,20 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<SMALL_VERTICES>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<Status, Stop> {
-        match self.run_without_polytope(set)? {
-            PortalEnd::Certified => Ok(Status::Converged),
-            PortalEnd::Open(portal) => self.expand_from(set, portal.as_ref(), arena),
+        let portal = self.run_without_polytope(set)?;
+        if self.proof.upper < f64::INFINITY {
+            return Ok(Status::Converged);
         }
+        self.expand_from(set, portal.as_ref(), arena)
     }
 
-    /// Runs steps 2 to 4. Not inlined, so that its frame is released before a polytope is made.
+    /// Runs steps 2 to 4, and stores the proof if there is one. Returns the portal; `None` with a proof, or if none was found. Not inlined,
+    /// so that its frame is released before a polytope is made.
     #[inline(never)]
     fn run_without_polytope(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-    ) -> Result<PortalEnd, Stop> {
+    ) -> Result<Option<[Vertex; 3]>, Stop> {
         let mut ray = self.request.ray;
         let opposite = match self.request.center {
             Some(center) => {
@@ -210,10 +204,10 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
         if let Some(portal) = &portal {
             if self.certify(set, portal)? {
-                return Ok(PortalEnd::Certified);
+                return Ok(None);
             }
         }
-        Ok(PortalEnd::Open(portal))
+        Ok(portal)
     }
 
     /// Sets the interior point to the middle of the support points along the ray and opposite to it, and `ray` to the
@@ -248,12 +242,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<N>,
         ray: &Vec3,
     ) -> Result<Option<[Vertex; 3]>, Stop> {
+        let gap = self.allowed_gap();
         let query = &mut *self.query;
-        let gap = self
-            .request
-            .limits
-            .gap
-            .allowed(&query.scale, query.upper.depth);
         let length = query.upper.depth - self.interior.v.dot(ray);
         let Some(mut portal) = discover(query, set, ray, length, gap, (2.0 * gap / length).sqrt())?
         else {
@@ -270,6 +260,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(Some(portal))
     }
 
+    /// Returns the gap that is allowed below the upper bound, metres.
+    #[inline(always)]
+    fn allowed_gap(&self) -> f64 {
+        let query = &*self.query;
+        let gap = &self.request.limits.gap;
+        gap.allowed(&query.scale, query.upper.depth)
+    }
+
     /// Returns the interior point as a corner.
     fn interior_vertex(&self) -> Vertex {
         Vertex {
@@ -278,7 +276,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
     }
 
-    /// Tries to prove the minimum from the tetrahedron of interior point and portal. Returns whether it is proven.
+    /// Tries to prove the minimum from the tetrahedron of interior point and portal, and stores the proof. Returns
+    /// whether it is proven.
     #[inline(always)]
     fn certify(
         &mut self,
@@ -289,11 +288,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let scale = &self.query.scale;
         let size = scale.size();
         let tolerance = scale.tolerance(self.request.limits.gap.tolerance);
-        let allowed = self
-            .request
-            .limits
-            .gap
-            .allowed(scale, self.query.upper.depth);
+        let allowed = self.allowed_gap();
         let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
         // A lower bound of at most the contact epsilon proves no overlap.
         let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
@@ -504,7 +499,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             self.refine_direction(set, &face, &polytope.normal(closest.face))?;
         }
         let upper = self.query.upper;
-        let gap = gap_limit.allowed(&self.query.scale, upper.depth);
+        let gap = self.allowed_gap();
         if upper.depth - lower < self.proof.upper - self.proof.lower {
             let face = || exit_face(&upper, &interior, set, surface, closest.face, gap);
             self.store_proof(set, face, lower, gap);

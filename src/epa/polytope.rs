@@ -196,13 +196,6 @@ impl<const F: usize> EpaPolytope<F> {
         self.plane(f).offset()
     }
 
-    /// Returns the distance of a face's plane from the origin less the error, metres; negative if the origin is
-    /// outside.
-    fn distance(&self, f: usize) -> f64 {
-        let plane = self.plane(f);
-        plane.offset() / plane.normal().norm() - self.error
-    }
-
     /// Returns the error of the distance of a plane, metres.
     #[inline(always)]
     pub fn error(&self) -> f64 {
@@ -299,7 +292,8 @@ impl<const F: usize> EpaPolytope<F> {
     pub fn lower_bound(&self, closest: &ClosestFace) -> f64 {
         let max_key = closest.key + 2.0 * KEY_ERROR_REL * closest.key.abs();
         let tied = (0..self.used.min(F)).filter(|&f| self.keys[f] <= max_key);
-        tied.fold(f64::INFINITY, |least, f| lesser(self.distance(f), least))
+        let distances = tied.map(|f| self.offset(f) / self.normal(f).norm());
+        distances.fold(f64::INFINITY, |least, d| lesser(d, least)) - self.error
     }
 
     /// Frees all faces.
