@@ -52,6 +52,7 @@ step packaging-single cargo test --no-fail-fast -p lab --features single packagi
 # What test.sh leaves out in single precision: the extension, installing, the documentation's programs.
 step single cargo test --no-fail-fast --features single
 step commands sh c-tests/lab/commands.sh
+step figures sh c-tests/lab/commands.sh figures
 step rates campaign rates
 step wide campaign wide
 step states campaign states

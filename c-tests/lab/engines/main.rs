@@ -4,13 +4,13 @@
 //! Prints the swap tables, Debian's FCL, ODE, MuJoCo and DART on libccd and on this
 //! library, as Markdown; progress goes to stderr.
 //!
-//! `cargo run -p lab --bin engines` the single queries of the test, in more poses (a minute)
-//! `cargo run -p lab --bin engines -- world` ODE worlds collided by this library alone (3 minutes)
+//! `cargo run --release -p lab --bin engines` the single queries of the test, in more poses (a minute)
+//! `cargo run --release -p lab --bin engines -- world` ODE worlds collided by this library alone (3 minutes)
 //! `cargo run --release -p lab --bin engines -- fcl` what FCL's collide costs, by use (2 minutes)
-//! `cargo run -p lab --bin engines -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
-//! `cargo run -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
+//! `cargo run --release -p lab --bin engines -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
+//! `cargo run --release -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --release -p lab --bin engines -- steps` a step of whole programs on both libraries (2 minutes)
-//! `cargo run -p lab --bin engines -- long` whole simulations, longer and harder (3 minutes)
+//! `cargo run --release -p lab --bin engines -- long` whole simulations, longer and harder (3 minutes)
 
 #[path = "mod.rs"]
 mod engines;

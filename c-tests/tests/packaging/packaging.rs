@@ -227,3 +227,13 @@ fn include_readme_cpp_program() {
     let depth = numbers(&program.run([""; 0]).stdout)[0];
     assert!((depth - (2.0 - 0.14_f64.sqrt())).abs() < 1e-5, "{depth}");
 }
+
+/// Checks that every command of the pages is one that a step runs.
+#[test]
+fn commands_of_the_pages_are_run() {
+    if !root().join(".git").exists() {
+        println!("skipped: not a git repository");
+        return;
+    }
+    run(Command::new("sh"), &[&root().join("c-tests/lab/commands.sh"), &"check"]);
+}
