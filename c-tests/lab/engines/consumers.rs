@@ -14,7 +14,7 @@ pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
     ("ODE, a pile", "ode_pile.c", "1 1500 32 pile", 1500.0),
     ("MuJoCo 2, a pile", "mujoco_pile.c", "1 1500 30 pile", 1500.0),
     ("DART over FCL, a pile", "dart_pile.cpp", "1 3000 15 fcl", 3000.0),
-    ("FCL, bodies that drift", "fcl_scene.cpp", "0 through primitives 300 200 0", 300.0),
+    ("FCL, primitives that drift", "fcl_scene.cpp", "0 through primitives 300 200 0", 300.0),
 ];
 
 /// Returns the screen that compare.sh prints about a program.
