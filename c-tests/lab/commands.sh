@@ -169,7 +169,7 @@ cargo bench -p lab -- redraw
 cargo bench -p lab -- engines
 cargo bench -p lab -- record
 END
-run "configurations where libccd is wrong" "libccd" 's/NAME/planar/' <<'END'
+run "configurations where libccd is wrong" "libccd" 's/NAME/determinism/' <<'END'
 cargo run --release -p lab --bin campaigns -- ledger
 cargo run --release -p lab --bin campaigns -- NAME
 END

@@ -40,7 +40,7 @@ pub struct ccd_penetration_t {
     pub normal: ccd_vec3_t,
     /// Contact position, CCD_WANT_POS: the center of pressure, an estimate of the centroid of the
     /// overlap volume, projected along normal to the plane midway between the two support planes.
-    /// At most half the depth from both objects, within the tolerance; up to 1 mm farther in 3 of a
+    /// At most half the depth from both objects, within the tolerance; up to 1 mm farther in 2 of a
     /// million hits of slender metre-sized curved bodies. Root mean square error for objects of a
     /// quarter metre and depths up to a millimetre: 0.1 mm for prisms and boxes on a
     /// face, 3 mm for boxes in any pose and discs, 7 mm for other round objects, 15 mm for a cone on
