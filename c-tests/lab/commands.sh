@@ -146,6 +146,18 @@ run "some tests" "ok. [1-9]" 's/NAME/header/; s/MODULE/math/' <<'END'
 cargo test --test integration NAME::
 cargo test --lib MODULE::
 END
+run "the tests that pages name" ": test$" 's/ --nocapture//; s/ --$//; / -- /!s/$/ --/; s/$/ --list | grep ": test$"/' <<'END'
+cargo test --test integration stability::configurations
+cargo test --test integration support_counts::
+cargo test --test integration support_counts -- --nocapture
+cargo test --test integration swap::
+cargo test --test integration record::
+cargo test --test integration pos_
+cargo test --test integration known_costs
+cargo test --test integration no_panic
+cargo test -p lab -- --nocapture libraries_are static_link
+cargo test -p lab charts_test::
+END
 run "tests with another compiler" "ok. [1-9]" 's/$/ cargo test --test integration contract::distances/' clang clang++ <<'END'
 CC=clang CXX=clang++
 END
@@ -178,8 +190,6 @@ elsewhere "steps of release.sh by these names; packaging; itself" <<'END'
 cargo run --release -p lab --bin campaigns -- rates
 cargo run --release -p lab --bin campaigns -- wide
 cargo run --release -p lab --bin campaigns -- worst
-cargo test -p lab -- --nocapture libraries_are static_link
-cargo test -p lab charts_test::
 cargo vendor
 source.sh OUT
 sh cmake/packages/source.sh OUT
@@ -216,14 +226,6 @@ cargo test
 sh c-tests/test.sh
 cargo fmt --all --check
 cargo clippy --workspace --all-targets -- -D warnings
-cargo test --test integration stability::configurations
-cargo test --test integration support_counts::
-cargo test --test integration support_counts -- --nocapture
-cargo test --test integration swap::
-cargo test --test integration record::
-cargo test --test integration pos_
-cargo test --test integration known_costs
-cargo test --test integration no_panic
 sh c-tests/tools/check.sh memcheck contract::
 sh c-tests/compare.sh [--every N] [--swap] [--keep DIR] PROGRAM [ARGUMENT...]
 END
