@@ -19,6 +19,8 @@ mod charts;
 #[path = "charts/test.rs"]
 mod charts_test;
 #[cfg(not(feature = "single"))]
+mod compare;
+#[cfg(not(feature = "single"))]
 mod engines;
 mod packaging;
 #[cfg(not(feature = "single"))]

@@ -45,7 +45,7 @@ packages() {
 
 sh c-tests/setup.sh
 step charts cargo test --no-fail-fast -p lab charts_test::
-step compare cargo test --no-fail-fast --test integration compare:: -- --ignored
+step compare cargo test --no-fail-fast -p lab compare::
 step simulations cargo test --no-fail-fast -p lab simulations::
 step packaging cargo test --no-fail-fast -p lab packaging::
 step packaging-single cargo test --no-fail-fast -p lab --features single packaging::
