@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Builds the release library and C or C++ programs that link it, by make (`programs.mk`), runs them, and asserts which
-//! libccd they load.
-//!
-//! The programs of tests and of the lab include this file as their module `harness`.
+//! libccd they load. The programs of tests and of the lab include this file as their module `harness`.
 //!
 //! ```ignore
 //! let program = Program::c("exact").source("truth/exact.c").link_ours_shared().build();
@@ -18,12 +16,10 @@
 //! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
 //! | `link_system` | the system's; `.swapped()` gives the same program on this library |
 //!
-//! The `cc` crate finds the compilers for the test's own target, and reads `CC`, `CXX`, `CFLAGS`,
-//! `CXXFLAGS` and its other variables. All programs but those marked `without_tools` are compiled and
-//! linked with `C_TESTS_FLAGS` (`-fsanitize=address`) and run by `C_TESTS_RUNNER`
-//! (`valgrind --error-exitcode=99`). Programs for another platform are run by
-//! `CARGO_TARGET_<its name>_RUNNER` (`qemu-aarch64`), as the test itself. `NM` and `OBJCOPY` name that
-//! platform's tools, where the usual ones do not support it.
+//! The environment names the compilers and their flags: `CC`, `CXX`, `CFLAGS`, `CXXFLAGS`, and other tools: `NM`, `OBJCOPY`.
+//! All programs but those marked `without_tools` are compiled and linked with `C_TESTS_FLAGS` (`-fsanitize=address`) and run
+//! by `C_TESTS_RUNNER` (`valgrind --error-exitcode=99`). Programs for another platform are run by
+//! `CARGO_TARGET_<its name>_RUNNER` (`qemu-aarch64`), as the test itself.
 
 // Each driver uses a part of this module.
 #![allow(dead_code)]
@@ -33,23 +29,16 @@ use std::collections::hash_map::DefaultHasher;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::hash::{Hash, Hasher};
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Output, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
 /// The scalar of a build of the library.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     Double,
     Single,
-}
-
-impl Default for Precision {
-    fn default() -> Precision {
-        Precision::CURRENT
-    }
 }
 
 impl Precision {
@@ -58,12 +47,27 @@ impl Precision {
 
     /// Returns the last word of `ccdImplementation()`.
     pub fn name(self) -> &'static str {
-        match self {
-            Precision::Double => "double",
-            Precision::Single => "single",
-        }
+        ["double", "single"][self as usize]
     }
 }
+
+/// Returns the repository's root.
+pub fn root() -> &'static Path {
+    // The lab's package is in a subfolder.
+    let mut folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    folders.find(|dir| dir.join("c-tests").is_dir()).expect("a package of the repository")
+}
+
+/// Returns the folder of all output of this module, `target/c-tests`.
+pub fn output_dir() -> PathBuf {
+    // Cargo passes the path of target/tmp to tests and benchmarks.
+    let tmp = option_env!("CARGO_TARGET_TMPDIR").map(|tmp| PathBuf::from(tmp).join(".."));
+    let dir = tmp.unwrap_or_else(|| root().join("target")).join("c-tests");
+    let made = fs::create_dir_all(&dir).and_then(|()| dir.canonicalize());
+    made.unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
+}
+
+// --- the library ------------------------------------------------------------------------------
 
 /// A release build of the library, ready to link against.
 #[derive(Debug)]
@@ -72,61 +76,27 @@ pub struct LibraryBuild {
     pub dir: PathBuf,
 }
 
-/// Returns the repository's root.
-pub fn root() -> &'static Path {
-    // The benchmark's package is in a subfolder.
-    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let root = package.ancestors().find(|dir| dir.join("c-tests").is_dir());
-    root.expect("a package of the repository")
-}
-
-/// Target of this test, its programs and the library.
-pub const TARGET: &str = env!("TARGET");
-
-/// Returns the C or C++ compiler for [`TARGET`] with the flags of all programs.
-pub fn compiler(cpp: bool) -> cc::Build {
-    let mut build = cc::Build::new();
-    build
-        .cpp(cpp)
-        .target(TARGET)
-        .host(env!("HOST"))
-        .opt_level(2)
-        // It takes a third of the compile time of C++.
-        .debug(!cpp || under_tool())
-        .warnings(true)
-        .extra_warnings(true)
-        .cargo_metadata(false)
-        .out_dir(output_dir())
-        // One rounding per operation gives the same bits on every machine.
-        .flag("-ffp-contract=off");
-    if cfg!(target_arch = "x86") {
-        build.flag("-msse2").flag("-mfpmath=sse");
-    }
-    build
-}
-
-/// Returns the command that runs a compiler; panics where there is none.
-pub fn compile_with(build: &cc::Build) -> Command {
-    let found = build.try_get_compiler();
-    found.unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first")).to_command()
-}
-
-/// Returns the folder of all output of this module, `target/c-tests`.
-pub fn output_dir() -> PathBuf {
-    // Cargo passes the path of target/tmp to integration tests and benchmarks.
-    let target = match option_env!("CARGO_TARGET_TMPDIR") {
-        Some(tmp) => PathBuf::from(tmp).join(".."),
-        None => root().join("target"),
-    };
-    let dir = target.join("c-tests");
-    fs::create_dir_all(&dir).unwrap_or_else(|e| panic!("cannot make {}: {e}", dir.display()));
-    dir.canonicalize().unwrap_or_else(|e| panic!("{}: {e}", dir.display()))
-}
-
 /// Returns the release library, which it builds once per process and precision.
 pub fn library(precision: Precision) -> &'static LibraryBuild {
     static LIBRARIES: [OnceLock<LibraryBuild>; 2] = [OnceLock::new(), OnceLock::new()];
-    LIBRARIES[precision as usize].get_or_init(|| build_library(precision))
+    LIBRARIES[precision as usize].get_or_init(|| {
+        let release = if emulated() { cargo_dir().join(TARGET) } else { cargo_dir() }.join("release");
+        let target = emulated().then(|| format!("--target={TARGET}"));
+        let features = (precision == Precision::Single).then_some("--features=single");
+        let variables = [
+            ("REPOSITORY", quoted([root()])),
+            ("BUILT", quoted([cargo_dir()])),
+            ("FROM", quoted([release])),
+            ("INTO", precision.name().to_owned()),
+            ("FLAGS", quoted([rust_flags()])),
+            ("FEATURES", quoted(features)),
+            ("PLATFORM", quoted(target)),
+        ];
+        // Both precisions share their crates. Of parallel processes one builds, the others wait.
+        let _lock = locked(&output_dir().join("library.lock"));
+        make("library", &variables, "make (for the library)");
+        LibraryBuild { dir: output_dir().join(precision.name()) }
+    })
 }
 
 /// Returns the folder in which cargo builds the library for programs. CMake builds it there again with the same flags, so
@@ -141,41 +111,7 @@ fn rust_flags() -> String {
     let home = variable("CARGO_HOME").or_else(|| Some(variable("HOME")? + "/.cargo")).unwrap_or_default();
     let own = [format!("--remap-path-prefix={home}=/cargo"), format!("--remap-path-prefix={}=.", root().display())];
     let given = variable("CARGO_ENCODED_RUSTFLAGS").map(|flags| vec![flags]);
-    let given = given.unwrap_or_else(|| words("RUSTFLAGS"));
-    [given, own.to_vec()].concat().join("\u{1f}")
-}
-
-fn build_library(precision: Precision) -> LibraryBuild {
-    let text = |path: &Path| path.display().to_string();
-    let target = cargo_dir();
-    let mut cargo = vec![std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned())];
-    let mut add = |words: &str| cargo.extend(words.split(' ').map(String::from));
-    add("rustc --release --lib --locked --crate-type staticlib,cdylib");
-    if precision == Precision::Single {
-        add("--features single");
-    }
-    let mut release = target.join("release");
-    let mut rustc = vec![std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned())];
-    if emulated() {
-        add(&format!("--target {TARGET}"));
-        rustc.push(format!("--target={TARGET}"));
-        release = target.join(TARGET).join("release");
-    }
-    cargo.extend(["--target-dir".to_owned(), text(&target)]);
-    let flags = format!("CARGO_ENCODED_RUSTFLAGS={}", rust_flags());
-    let variables = [
-        ("CARGO_BUILD", format!("cd {} && env {} {}", quoted([text(root())]), quoted([flags]), quoted(cargo))),
-        ("FROM", quoted([text(&release)])),
-        ("INTO", precision.name().to_owned()),
-        ("SYMBOLS", quoted([tool("nm")])),
-        ("RENAME", quoted([tool("objcopy")])),
-        ("COMPILE_RUST", quoted(rustc)),
-    ];
-    // Both precisions share their crates. Of parallel processes one builds, the others wait.
-    let lock = locked(&output_dir().join("library.lock"));
-    make("library", &variables, "make (for the library)");
-    drop(lock);
-    LibraryBuild { dir: output_dir().join(precision.name()) }
+    [given.unwrap_or_else(|| words("RUSTFLAGS")), own.to_vec()].concat().join("\u{1f}")
 }
 
 /// Makes a target of `programs.mk`.
@@ -187,8 +123,8 @@ fn make(target: &str, variables: &[(&str, String)], what: &str) -> Written {
 }
 
 /// Quotes words for a shell within make.
-fn quoted(words: impl IntoIterator<Item = impl AsRef<str>>) -> String {
-    let quote = |word: &str| format!("'{}'", word.replace('\'', "'\\''").replace('$', "$$"));
+fn quoted(words: impl IntoIterator<Item = impl AsRef<OsStr>>) -> String {
+    let quote = |word: &OsStr| format!("'{}'", word.to_string_lossy().replace('\'', "'\\''").replace('$', "$$"));
     words.into_iter().map(|word| quote(word.as_ref())).collect::<Vec<_>>().join(" ")
 }
 
@@ -199,14 +135,48 @@ pub fn locked(path: &Path) -> File {
     file.and_then(|file| file.lock().map(|()| file)).unwrap_or_else(|e| panic!("cannot lock {}: {e}", path.display()))
 }
 
-/// Returns the name of a tool for object files, which the environment may give.
-fn tool(name: &str) -> String {
-    std::env::var(name.to_uppercase()).unwrap_or_else(|_| name.to_owned())
+// --- tools ------------------------------------------------------------------------------------
+
+/// Target of this test, its programs and the library.
+const TARGET: &str = env!("TARGET");
+
+/// Returns whether the programs are for another processor than this machine's.
+pub fn emulated() -> bool {
+    TARGET != env!("HOST")
 }
 
-/// Returns its command.
+/// Splits an environment variable at blanks; empty where it is not set.
+fn words(variable: &str) -> Vec<String> {
+    std::env::var(variable).unwrap_or_default().split_whitespace().map(String::from).collect()
+}
+
+/// Returns a tool's command, which a variable may give; panics later where neither is installed.
+pub fn tool(variable: &str, otherwise: &str) -> Command {
+    let given = words(variable);
+    let mut command = Command::new(given.first().map_or(otherwise, |name| name));
+    command.args(given.iter().skip(1));
+    command
+}
+
+/// Returns the command of a tool for object files.
 pub fn binutils(name: &str) -> Command {
-    Command::new(tool(name))
+    tool(&name.to_uppercase(), name)
+}
+
+/// Returns the command of the C or C++ compiler with the flags of all programs.
+pub fn compiler(cpp: bool) -> Command {
+    let mut command = if cpp { tool("CXX", "c++") } else { tool("CC", "cc") };
+    // One rounding per operation gives the same bits on every machine.
+    command.args(["-O2", "-Wall", "-Wextra", "-ffp-contract=off"]);
+    if cfg!(target_arch = "x86") {
+        command.args(["-msse2", "-mfpmath=sse"]);
+    }
+    // It takes a third of the compile time of C++.
+    if !cpp || under_tool() {
+        command.arg("-g");
+    }
+    command.args(words(if cpp { "CXXFLAGS" } else { "CFLAGS" }));
+    command
 }
 
 /// Returns whether `command --version` succeeds.
@@ -230,11 +200,9 @@ pub fn of_package(key: &str) -> String {
 
 /// Returns the system's release and the processor, for figures measured on this machine.
 pub fn machine() -> String {
-    let release = |key| value_in("/etc/os-release", key);
-    let name = release("NAME=");
+    let [name, release] = ["NAME=", "VERSION_ID="].map(|key| value_in("/etc/os-release", key));
     let name = name.split(' ').next().unwrap_or_default();
-    let processor = value_in("/proc/cpuinfo", "model name");
-    format!("{name} {}, {processor}", release("VERSION_ID="))
+    format!("{name} {release}, {}", value_in("/proc/cpuinfo", "model name"))
 }
 
 /// Returns the maker and family of the processor, by which the C library chooses among its functions.
@@ -242,56 +210,120 @@ pub fn processor_family() -> String {
     ["vendor_id", "cpu family"].map(|key| value_in("/proc/cpuinfo", key)).join(" ")
 }
 
-/// Returns whether the programs are for another processor than this machine's.
-pub fn emulated() -> bool {
-    TARGET != env!("HOST")
+/// Returns whether programs are compiled for a tool, or run under one.
+pub fn under_tool() -> bool {
+    ["C_TESTS_FLAGS", "C_TESTS_RUNNER"].iter().any(|name| !words(name).is_empty())
 }
 
-/// Returns the command that runs a program for [`TARGET`]; empty for this machine's own.
-fn emulator() -> Vec<String> {
-    let target = TARGET.to_uppercase().replace('-', "_");
-    words(&format!("CARGO_TARGET_{target}_RUNNER"))
+/// Returns the number of a program's inputs: all, or a tenth under a tool, which checks memory and is
+/// ten times slower.
+pub fn rounds(all: u32) -> String {
+    (all / if under_tool() { 10 } else { 1 }).to_string()
+}
+
+// --- running ----------------------------------------------------------------------------------
+
+/// Output of a program.
+#[derive(Clone, Debug)]
+pub struct Written {
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Written {
+    fn of(output: &Output) -> Written {
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        Written { stdout: text(&output.stdout), stderr: text(&output.stderr) }
+    }
 }
 
 /// Runs a tool; panics with its output unless it succeeds.
 pub fn must_succeed(command: &mut Command, what: &str) -> Written {
-    let output = match command.output() {
-        Ok(output) => output,
-        Err(e) if e.kind() == io::ErrorKind::NotFound => {
-            panic!("{what} is not installed: run `sh c-tests/setup.sh` first")
-        }
-        Err(e) => panic!("cannot run {what}: {e}"),
-    };
+    let output = command.output();
+    let output = output.unwrap_or_else(|e| panic!("{what} does not run ({e}): run `sh c-tests/setup.sh` first"));
     let written = Written::of(&output);
-    assert!(
-        output.status.success(),
-        "{what} failed ({}): {}\n{}{}",
-        output.status,
-        words_of(command),
-        written.stdout,
-        written.stderr
-    );
+    let Written { stdout, stderr } = &written;
+    assert!(output.status.success(), "{what} failed ({}): {command:?}\n{stdout}{stderr}", output.status);
     written
 }
 
-/// Returns the words of a command, without its environment.
-fn words_of(command: &Command) -> String {
-    let words = std::iter::once(command.get_program()).chain(command.get_args());
-    let shown: Vec<_> = words.map(OsStr::to_string_lossy).collect();
-    shown.join(" ")
+/// Runs a command under `timeout`; panics where it does not end in time.
+pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Written) {
+    let mut limited = Command::new("timeout");
+    limited.arg(timeout.as_secs_f64().to_string());
+    limited.arg(command.get_program()).args(command.get_args());
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => limited.env(name, value),
+            None => limited.env_remove(name),
+        };
+    }
+    let output = limited.stdin(Stdio::null()).output();
+    let output = output.unwrap_or_else(|e| panic!("cannot run {limited:?}: {e}"));
+    let written = Written::of(&output);
+    let timed_out = output.status.code() == Some(124);
+    assert!(!timed_out, "{command:?} did not end in {timeout:?}\n{}{}", written.stdout, written.stderr);
+    (output.status, written)
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-enum Link {
-    #[default]
-    OursShared,
-    OursStatic,
-    OursRenamedAndSystem,
-    System,
+/// Loads a library before the others of a command's program. By its file name: the dynamic linker
+/// splits `LD_PRELOAD` at blanks, which the path may contain.
+pub fn preload(command: &mut Command, library: &Path) {
+    let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
+    let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
+    dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
+    command.env("LD_PRELOAD", library.file_name().expect("a file"));
+    command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
 }
+
+/// Runs a command under callgrind with these options and uncompressed names. Returns its output and
+/// the text of each dump.
+pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<String>), String> {
+    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let out = work.path().join("out");
+    let mut command = Command::new("valgrind");
+    command.args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"]).args(options);
+    command.arg(format!("--callgrind-out-file={}", out.display()));
+    command.arg(plain.get_program()).args(plain.get_args());
+    command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
+    // Lazy binding would be counted as part of the query.
+    let output = command.env("LD_BIND_NOW", "1").output().map_err(|e| format!("valgrind: {e}"))?;
+    let written = Written::of(&output);
+    if !output.status.success() {
+        return Err(written.stderr);
+    }
+    let dumps = (1..).map(|i: usize| out.with_extension(i.to_string())).take_while(|file| file.exists());
+    let texts = std::iter::once(out.clone()).chain(dumps).filter_map(|file| fs::read_to_string(file).ok());
+    Ok((written, texts.collect()))
+}
+
+/// Parses the line `first key value key value …` of a program's output.
+pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
+    let line = text.lines().find(|line| line.split(' ').next() == Some(first));
+    let words: Vec<&str> = line.unwrap_or_else(|| panic!("no `{first}` line in {text}")).split(' ').skip(1).collect();
+    let number = |word: &str| word.parse().unwrap_or_else(|e| panic!("{word}: {e}"));
+    words.chunks(2).map(|pair| (pair[0].to_owned(), number(pair[1]))).collect()
+}
+
+/// Replaces the text between the mark `<!-- NAME -->` and the next `<!-- end -->`.
+pub fn between_marks(text: &str, name: &str, new: &str) -> String {
+    let mark = format!("<!-- {name} -->\n");
+    let parts = text.split_once(&mark).and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
+    let (before, after) = parts.unwrap_or_else(|| panic!("no mark {name}"));
+    format!("{before}{mark}{new}<!-- end -->{after}")
+}
+
+/// Does the same in a page of the repository.
+pub fn write_between_marks(page: &str, name: &str, new: &str) {
+    let path = root().join(page);
+    let written = fs::read_to_string(&path).and_then(|text| fs::write(&path, between_marks(&text, name, new)));
+    written.unwrap_or_else(|e| panic!("{page}: {e}"));
+}
+
+// --- programs ---------------------------------------------------------------------------------
 
 /// C or C++ program to compile.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Program {
     name: String,
     cpp: bool,
@@ -301,14 +333,26 @@ pub struct Program {
     flags: Vec<OsString>,
     libraries: Vec<String>,
     precision: Precision,
-    link: Link,
+    /// By the names of `programs.mk`: shared, static, renamed, system.
+    link: &'static str,
     tools: bool,
 }
 
 impl Program {
     /// Returns a C program: C99 unless [`standard`](Self::standard) sets another.
     pub fn c(name: &str) -> Program {
-        Program { name: name.to_owned(), tools: true, ..Program::default() }
+        Program {
+            name: name.to_owned(),
+            cpp: false,
+            standard: None,
+            source: PathBuf::new(),
+            system_headers: false,
+            flags: Vec::new(),
+            libraries: Vec::new(),
+            precision: Precision::CURRENT,
+            link: "shared",
+            tools: true,
+        }
     }
 
     /// Returns a C++ program: C++17 unless [`standard`](Self::standard) sets another.
@@ -317,27 +361,23 @@ impl Program {
     }
 
     /// Compiles the C source as C++.
-    pub fn in_cpp(mut self) -> Program {
-        self.cpp = true;
-        self
+    pub fn in_cpp(self) -> Program {
+        Program { cpp: true, ..self }
     }
 
     /// Sets the source file, relative to `c-tests/` (or absolute).
-    pub fn source(mut self, path: impl AsRef<Path>) -> Program {
-        self.source = root().join("c-tests").join(path);
-        self
+    pub fn source(self, path: impl AsRef<Path>) -> Program {
+        Program { source: root().join("c-tests").join(path), ..self }
     }
 
     /// Sets the language standard: `"c99"`, `"gnu11"`, `"c++20"`.
-    pub fn standard(mut self, standard: &str) -> Program {
-        self.standard = Some(standard.to_owned());
-        self
+    pub fn standard(self, standard: &str) -> Program {
+        Program { standard: Some(standard.to_owned()), ..self }
     }
 
     /// Includes the system's headers of libccd instead of those in `include/`.
-    pub fn system_headers(mut self) -> Program {
-        self.system_headers = true;
-        self
+    pub fn system_headers(self) -> Program {
+        Program { system_headers: true, ..self }
     }
 
     /// Adds a flag for compiling and linking, after those of [`compiler`].
@@ -346,56 +386,51 @@ impl Program {
         self
     }
 
-    /// Links a library, before libccd.
+    /// Makes the compiler strict: a warning is an error.
+    pub fn strict(self) -> Program {
+        self.flag("-pedantic").flag("-Werror")
+    }
+
+    /// Adds a library, before libccd.
     pub fn library(mut self, name: &str) -> Program {
         self.libraries.push(format!("-l{name}"));
         self
     }
 
     /// Sets the precision of this library, [`Precision::CURRENT`] by default.
-    pub fn precision(mut self, precision: Precision) -> Program {
-        self.precision = precision;
-        self
+    pub fn precision(self, precision: Precision) -> Program {
+        Program { precision, ..self }
     }
 
-    pub fn link_ours_shared(mut self) -> Program {
-        self.link = Link::OursShared;
-        self
+    pub fn link_ours_shared(self) -> Program {
+        Program { link: "shared", ..self }
     }
 
-    pub fn link_ours_static(mut self) -> Program {
-        self.link = Link::OursStatic;
-        self
+    pub fn link_ours_static(self) -> Program {
+        Program { link: "static", ..self }
     }
 
-    pub fn link_ours_renamed_and_system(mut self) -> Program {
-        self.link = Link::OursRenamedAndSystem;
-        self
+    pub fn link_ours_renamed_and_system(self) -> Program {
+        Program { link: "renamed", ..self }
     }
 
-    pub fn link_system(mut self) -> Program {
-        self.link = Link::System;
-        self
+    pub fn link_system(self) -> Program {
+        Program { link: "system", ..self }
     }
 
     /// Ignores `C_TESTS_FLAGS` and `C_TESTS_RUNNER`, for a program that fails under a sanitizer or
     /// valgrind, such as one with its own malloc.
-    pub fn without_tools(mut self) -> Program {
-        self.tools = false;
-        self
+    pub fn without_tools(self) -> Program {
+        Program { tools: false, ..self }
     }
 
     /// Compiles and links; panics with the compiler's messages where that fails.
     pub fn build(self) -> Executable {
-        assert!(
-            self.precision == Precision::Double || matches!(self.link, Link::OursShared | Link::OursStatic),
-            "{}: the system's libccd is double, this program single",
-            self.name
-        );
-        let mut compile = compile_with(&compiler(self.cpp));
+        let is_ours = ["shared", "static"].contains(&self.link);
+        assert!(is_ours || self.precision == Precision::Double, "{}: the system's libccd is double", self.name);
+        let mut compile = compiler(self.cpp);
         let default = ["c99", "c++17"][usize::from(self.cpp)];
-        let standard = self.standard.as_deref().unwrap_or(default);
-        compile.arg(format!("-std={standard}"));
+        compile.arg(format!("-std={}", self.standard.as_deref().unwrap_or(default)));
         if self.precision == Precision::Single {
             compile.arg("-DCCD_SINGLE");
         }
@@ -410,41 +445,33 @@ impl Program {
         // clang compiles a C source as C++ only with -x.
         compile.args(["-x", ["c", "c++"][usize::from(self.cpp)]]).arg(&self.source);
         compile.args(["-x", "none"]).args(&self.libraries);
-        let link = match self.link {
-            Link::OursShared => "shared",
-            Link::OursStatic => "static",
-            Link::OursRenamedAndSystem => "renamed",
-            Link::System => "system",
-        };
-        if self.link != Link::System {
+        if self.link != "system" {
             library(self.precision);
         }
 
         // The hash of the command distinguishes programs of one name. All tests and runs share the program until one of its
         // files changes.
-        let words: Vec<_> = std::iter::once(compile.get_program()).chain(compile.get_args()).collect();
-        let command = quoted(words.into_iter().map(OsStr::to_string_lossy));
+        let command = quoted(std::iter::once(compile.get_program()).chain(compile.get_args()));
         let mut hash = DefaultHasher::new();
-        (&command, link, self.precision).hash(&mut hash);
+        (&command, self.link, self.precision.name()).hash(&mut hash);
         let program = format!("programs/{}-{:016x}", self.name, hash.finish());
         let path = output_dir().join(&program);
         fs::create_dir_all(path.parent().expect("a folder")).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let variables = [
             ("PROGRAM", program.clone()),
             ("COMPILE", command),
-            ("LINK", link.to_owned()),
+            ("LINK", self.link.to_owned()),
             ("INTO", self.precision.name().to_owned()),
         ];
         let lock = locked(&path.with_extension("lock"));
         print!("{}", make(&program, &variables, &format!("the compiler (for {})", self.name)).stderr);
         drop(lock);
 
-        let library_path = (self.link == Link::OursShared).then(|| library(self.precision).dir.clone());
+        let library_path = (self.link == "shared").then(|| library(self.precision).dir.clone());
         let executable = Executable { library_path, tools: self.tools, ..Executable::from_path(&self.name, path) };
         match self.link {
-            Link::OursShared => executable.assert_loads_ours(),
-            Link::OursStatic => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
-            Link::OursRenamedAndSystem | Link::System => executable.assert_loads_system(),
+            "static" => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
+            _ => executable.assert_loads_its_ccd(),
         }
         executable
     }
@@ -457,57 +484,34 @@ pub struct Executable {
     name: String,
     /// Words of a command that runs the program.
     launcher: Vec<OsString>,
+    /// Folder of this library, on which the program runs, if not on the system's.
     library_path: Option<PathBuf>,
-    timeout: Duration,
     tools: bool,
     quiet: bool,
-}
-
-/// Output of a program that succeeded.
-#[derive(Clone, Debug)]
-pub struct Written {
-    pub stdout: String,
-    pub stderr: String,
-}
-
-impl Written {
-    fn of(output: &Output) -> Written {
-        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-        Written { stdout: text(&output.stdout), stderr: text(&output.stderr) }
-    }
 }
 
 impl Executable {
     /// Returns a program that another tool compiled, with its own search path for libraries.
     pub fn from_path(name: &str, path: impl Into<PathBuf>) -> Executable {
-        Executable {
-            path: path.into(),
-            name: name.to_owned(),
-            launcher: Vec::new(),
-            library_path: None,
-            timeout: Duration::from_secs(300),
-            tools: true,
-            quiet: false,
-        }
+        let (path, name, launcher) = (path.into(), name.to_owned(), Vec::new());
+        Executable { path, name, launcher, library_path: None, tools: true, quiet: false }
     }
 
     /// Returns the same program with this library instead of the system's.
     pub fn swapped(&self) -> Executable {
-        let mut swapped = self.clone();
-        swapped.library_path = Some(library(Precision::Double).dir.clone());
-        swapped.assert_loads_ours();
+        let library_path = Some(library(Precision::Double).dir.clone());
+        let swapped = Executable { library_path, ..self.clone() };
+        swapped.assert_loads_its_ccd();
         swapped
     }
 
     /// Returns the same program run by compare.sh, which adds a line `counted key value …` to its output.
     pub fn compared(&self, options: &[&str]) -> Executable {
-        let mut compared = self.clone();
-        let library = library(Precision::Double).dir.join("libccd.so");
-        compared.library_path = None;
-        compared.launcher = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
-        compared.launcher.extend(["--fields".into(), "--library".into(), library.into()]);
-        compared.launcher.extend(options.iter().map(OsString::from));
-        compared
+        let mut launcher: Vec<OsString> = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
+        launcher.extend(["--fields".into(), "--library".into()]);
+        launcher.push(library(Precision::Double).dir.join("libccd.so").into());
+        launcher.extend(options.iter().map(OsString::from));
+        Executable { library_path: None, launcher, ..self.clone() }
     }
 
     /// Prints compare.sh's screen on stderr in place of that line.
@@ -516,16 +520,9 @@ impl Executable {
         self
     }
 
-    /// Sets the longest run, 300 s by default; twenty times that under a tool or an emulator.
-    pub fn timeout(mut self, timeout: Duration) -> Executable {
-        self.timeout = timeout;
-        self
-    }
-
     /// Does not print the program's output.
-    pub fn quiet(mut self) -> Executable {
-        self.quiet = true;
-        self
+    pub fn quiet(self) -> Executable {
+        Executable { quiet: true, ..self }
     }
 
     /// Runs the program and prints its output; panics unless it exits with 0 in time.
@@ -535,11 +532,11 @@ impl Executable {
         written
     }
 
-    /// Runs the program as [`run`](Self::run) does, with any exit code.
+    /// Runs the program as [`run`](Self::run) does, with any exit code. It has 300 s, under a tool or an emulator twenty
+    /// times that.
     pub fn run_to_end(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> (ExitStatus, Written) {
-        let mut command = self.command();
-        let factor = if self.runner().is_empty() { 1 } else { 20 };
-        let (status, written) = run_command(command.args(args), self.timeout * factor);
+        let seconds = if self.runner().is_empty() { 300 } else { 6000 };
+        let (status, written) = run_command(self.command().args(args), Duration::from_secs(seconds));
         if !self.quiet {
             println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
         }
@@ -548,11 +545,8 @@ impl Executable {
 
     /// Returns the words before the program.
     fn runner(&self) -> Vec<String> {
-        let mut runner = emulator();
-        if self.tools {
-            runner.extend(words("C_TESTS_RUNNER"));
-        }
-        runner
+        let tool = if self.tools { words("C_TESTS_RUNNER") } else { Vec::new() };
+        [emulator(), tool].concat()
     }
 
     /// Returns the command that runs the program, without arguments.
@@ -584,125 +578,18 @@ impl Executable {
         Some(PathBuf::from(path))
     }
 
-    fn assert_loads_ours(&self) {
+    /// Asserts that the program loads this library from its folder, or, without one, a libccd that is not this library:
+    /// installed in /usr/local, this one is found first.
+    fn assert_loads_its_ccd(&self) {
         let loaded = self.loaded_ccd();
-        let dir = loaded.as_deref().and_then(Path::parent);
-        assert!(
-            dir.is_some() && dir == self.library_path.as_deref(),
-            "{} runs on {loaded:?}, not on the library of this repository",
-            self.name
-        );
-    }
-
-    fn assert_loads_system(&self) {
-        let loaded = self.loaded_ccd();
-        let file = loaded.as_deref().filter(|path| !path.starts_with(output_dir()));
-        let bytes = file.and_then(|path| fs::read(path).ok());
-        let bytes = bytes.unwrap_or_else(|| panic!("{} runs on {loaded:?}, not on the system's libccd", self.name));
-        // Installed in /usr/local, this library is found before libccd.
-        let name = b"ccdImplementation";
-        assert!(
-            !bytes.windows(name.len()).any(|w| w == name),
-            "{}: {loaded:?} is this library, installed; remove it to compare with libccd",
-            self.name
-        );
+        let file = loaded.as_deref().unwrap_or_else(|| panic!("{} loads no libccd", self.name));
+        let is_ours = fs::read(file).is_ok_and(|bytes| bytes.windows(17).any(|w| w == b"ccdImplementation"));
+        assert_eq!(is_ours, self.library_path.is_some(), "{} runs on {loaded:?}", self.name);
+        assert!(!is_ours || file.parent() == self.library_path.as_deref(), "{} runs on {loaded:?}", self.name);
     }
 }
 
-/// Loads a library before the others of a command's program. By its file name: the dynamic linker
-/// splits `LD_PRELOAD` at blanks, which the path may contain.
-pub fn preload(command: &mut Command, library: &Path) {
-    let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
-    let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
-    dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
-    command.env("LD_PRELOAD", library.file_name().expect("a file"));
-    command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
-}
-
-/// Runs a command under `timeout`; panics where it does not end in time.
-pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Written) {
-    let mut limited = Command::new("timeout");
-    limited.arg(timeout.as_secs_f64().to_string());
-    limited.arg(command.get_program()).args(command.get_args());
-    for (name, value) in command.get_envs() {
-        match value {
-            Some(value) => limited.env(name, value),
-            None => limited.env_remove(name),
-        };
-    }
-    let output = limited.stdin(Stdio::null()).output();
-    let output = output.unwrap_or_else(|e| panic!("cannot run {limited:?}: {e}"));
-    let written = Written::of(&output);
-    let timed_out = output.status.code() == Some(124);
-    assert!(!timed_out, "{command:?} did not end in {timeout:?}\n{}{}", written.stdout, written.stderr);
-    (output.status, written)
-}
-
-/// Runs a command under callgrind with these options and uncompressed names. Returns its output and
-/// the text of each dump.
-pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<String>), String> {
-    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let out = work.path().join("out");
-    let mut command = Command::new("valgrind");
-    command.args(["--tool=callgrind", "--compress-strings=no"]);
-    command.args(["--compress-pos=no"]).args(options);
-    command.arg(format!("--callgrind-out-file={}", out.display()));
-    command.arg(plain.get_program()).args(plain.get_args());
-    command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
-    // Lazy binding would be counted as part of the query.
-    command.env("LD_BIND_NOW", "1");
-    let output = command.output().map_err(|e| format!("valgrind: {e}"))?;
-    let written = Written::of(&output);
-    if !output.status.success() {
-        return Err(written.stderr);
-    }
-    let last = std::iter::once(out.clone());
-    let dumps = (1..).map(|i: usize| out.with_extension(i.to_string()));
-    let texts = last.chain(dumps.take_while(|file| file.exists()));
-    let texts = texts.filter_map(|file| fs::read_to_string(file).ok());
-    Ok((written, texts.collect()))
-}
-
-/// Parses the line `first key value key value …` of a program's output.
-pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
-    let line = text
-        .lines()
-        .find(|line| line.split(' ').next() == Some(first))
-        .unwrap_or_else(|| panic!("no `{first}` line in {text}"));
-    let words: Vec<&str> = line.split(' ').skip(1).collect();
-    let number = |word: &str| word.parse().unwrap_or_else(|e| panic!("{line}: {e}"));
-    words.chunks(2).map(|pair| (pair[0].to_owned(), number(pair[1]))).collect()
-}
-
-/// Replaces the text between the mark `<!-- NAME -->` and the next `<!-- end -->`.
-pub fn between_marks(text: &str, name: &str, new: &str) -> String {
-    let mark = format!("<!-- {name} -->\n");
-    let parts = text.split_once(&mark).and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
-    let (before, after) = parts.unwrap_or_else(|| panic!("no mark {name}"));
-    format!("{before}{mark}{new}<!-- end -->{after}")
-}
-
-/// Does the same in a page of the repository.
-pub fn write_between_marks(page: &str, name: &str, new: &str) {
-    let path = root().join(page);
-    let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{page}: {e}"));
-    fs::write(&path, between_marks(&text, name, new)).unwrap_or_else(|e| panic!("{page}: {e}"));
-}
-
-/// Returns the number of a program's inputs: all, or a tenth under a tool, which checks memory and is
-/// ten times slower.
-pub fn rounds(all: u32) -> String {
-    let share = if under_tool() { 10 } else { 1 };
-    (all / share).to_string()
-}
-
-/// Returns whether programs are compiled for a tool, or run under one.
-pub fn under_tool() -> bool {
-    let tool = ["C_TESTS_FLAGS", "C_TESTS_RUNNER"].map(|name| !words(name).is_empty());
-    tool.contains(&true)
-}
-
-/// Splits an environment variable at blanks; empty where it is not set.
-fn words(variable: &str) -> Vec<String> {
-    std::env::var(variable).unwrap_or_default().split_whitespace().map(String::from).collect()
+/// Returns the command that runs a program for [`TARGET`]; empty for this machine's own.
+fn emulator() -> Vec<String> {
+    words(&format!("CARGO_TARGET_{}_RUNNER", TARGET.to_uppercase().replace('-', "_")))
 }

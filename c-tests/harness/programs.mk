@@ -5,8 +5,8 @@
 # Targets are relative to the folder of all output, in which it runs: their names have no blanks, while those of sources
 # and of the repository may. A file is made under another name and moved, so that processes that use the old one go on.
 #
-#   library       FROM: where CARGO_BUILD leaves libccd.so and libccd.a; INTO: double or single; the commands SYMBOLS (nm),
-#                 RENAME (objcopy) and COMPILE_RUST, under names that mean nothing to cargo, since make exports them
+#   library       REPOSITORY; BUILT: cargo's folder, and FROM: where it leaves libccd.so and libccd.a; INTO: double or single;
+#                 FLAGS, FEATURES, PLATFORM: of cargo
 #   $(PROGRAM)    COMPILE: the command but for libccd and -o; LINK: one of those below; INTO
 
 .DELETE_ON_ERROR:
@@ -19,20 +19,21 @@ library: $(INTO)/libccd.so $(INTO)/librs_ccd.a $(INTO)/native.txt
 
 # Touched only when they change: a newer file would recompile all programs.
 cargo:
-	@$(CARGO_BUILD)
+	@cd $(REPOSITORY) && CARGO_ENCODED_RUSTFLAGS=$(FLAGS) $${CARGO:-cargo} rustc --release --lib --locked \
+	    --crate-type staticlib,cdylib $(FEATURES) $(PLATFORM) --target-dir $(BUILT)
 	@mkdir -p $(INTO)
 $(INTO)/libccd.so $(INTO)/libccd.a: cargo
 	@cmp -s $(FROM)/$(@F) $@ || { cp $(FROM)/$(@F) $@.new && mv $@.new $@; }
 
 # With rs_ before each of libccd's names, so that one process can link this library and the system's.
 $(INTO)/librs_ccd.a: $(INTO)/libccd.a
-	@$(SYMBOLS) -g --defined-only $< | sed -n 's/.* [A-Z] \(\(__\)\{0,1\}ccd.*\)/\1 rs_\1/p' | sort -u >$(INTO)/renamed.txt
+	@$${NM:-nm} -g --defined-only $< | sed -n 's/.* [A-Z] \(\(__\)\{0,1\}ccd.*\)/\1 rs_\1/p' | sort -u >$(INTO)/renamed.txt
 	@test -s $(INTO)/renamed.txt
-	@$(RENAME) --redefine-syms=$(INTO)/renamed.txt $< $@.new && mv $@.new $@
+	@$${OBJCOPY:-objcopy} --redefine-syms=$(INTO)/renamed.txt $< $@.new && mv $@.new $@
 
 # The linker's flags for a static library of Rust's.
 $(INTO)/native.txt: $(INTO)/libccd.a
-	@$(COMPILE_RUST) --crate-type staticlib --print native-static-libs -o $(INTO)/empty.a - </dev/null 2>&1 | \
+	@$${RUSTC:-rustc} $(PLATFORM) --crate-type staticlib --print native-static-libs -o $(INTO)/empty.a - </dev/null 2>&1 | \
 	    sed -n 's/.*native-static-libs: //p' >$@
 	@test -s $@
 

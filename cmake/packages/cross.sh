@@ -37,7 +37,8 @@ there() {
     shift
     in_chroot cross env -C /tree C_TESTS_PARTLY=1 CARGO_TARGET_DIR=/target \
         "CARGO_TARGET_${upper}_LINKER=$tools-gcc" "CARGO_TARGET_${upper}_RUNNER=$qemu" \
-        NM="$tools-nm" OBJCOPY="$tools-objcopy" OBJDUMP="$tools-objdump" READELF="$tools-readelf" \
+        CC="$tools-gcc" CXX="$tools-g++" NM="$tools-nm" OBJCOPY="$tools-objcopy" OBJDUMP="$tools-objdump" \
+        READELF="$tools-readelf" \
         cargo "$verb" --locked --target "$rust" "$@"
 }
 # shellcheck disable=SC2317  # called by name

@@ -169,18 +169,21 @@ impl Libraries {
 /// Compiles a source file of `c-tests` to a shared object: fast code, and on x86-64 that of every machine of the last ten years.
 /// Returns the compiler and its usual flags.
 fn compile(cpp: bool, flags: &[String], source: &str, object: &Path, linked: &[String]) -> Result<String, String> {
-    let mut compiler = harness::compiler(cpp);
-    compiler.opt_level(3).debug(false);
+    let mut compile = if cpp { harness::tool("CXX", "c++") } else { harness::tool("CC", "cc") };
+    compile.args("-O3 -ffunction-sections -fdata-sections -fPIC".split(' '));
     if cfg!(target_arch = "x86_64") {
-        compiler.flag("-march=x86-64-v2");
+        compile.args(["-m64", "-march=x86-64"]);
     }
-    let mut compile = harness::compile_with(&compiler);
+    compile.args(["-Wall", "-Wextra", "-ffp-contract=off"]);
+    if cfg!(target_arch = "x86_64") {
+        compile.arg("-march=x86-64-v2");
+    }
     let tool = compile.get_program().to_owned();
     let own = compile.get_args().map(|arg| arg.to_string_lossy());
     let shown = own.collect::<Vec<_>>().join(" ");
     let tests = harness::root().join("c-tests");
     compile.arg("-I").arg(harness::root().join("include")).arg("-I").arg(&tests).args(flags);
-    compile.args(["-shared", "-fPIC"]).arg(tests.join(source));
+    compile.arg("-shared").arg(tests.join(source));
     compile.arg("-o").arg(object).args(linked).arg("-lm");
     let run = compile.output().map_err(|e| format!("{tool:?}: {e}"))?;
     if !run.status.success() {

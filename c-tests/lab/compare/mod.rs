@@ -178,7 +178,7 @@ fn programs_that_cannot_be_compared_get_one_line() {
     let dir = tempfile::tempdir().expect("a directory");
     let [file, statically] = ["static.c", "static"].map(|name| dir.path().join(name));
     std::fs::write(&file, "int main(void) { return 0; }").expect("a file");
-    let mut compile = harness::compile_with(&harness::compiler(false));
+    let mut compile = harness::compiler(false);
     compile.arg("-static").arg(&file).arg("-o").arg(&statically);
     harness::must_succeed(&mut compile, "the compiler");
     let of = |program: &str| screen_of(Path::new(program), &[], &[]);

@@ -39,7 +39,7 @@ pub fn configure(source: &Path, build: &Path) -> Command {
 }
 
 pub fn c_compiler() -> Command {
-    harness::compile_with(&harness::compiler(false))
+    harness::compiler(false)
 }
 
 pub fn define(name: &str, value: impl AsRef<Path>) -> String {
