@@ -14,7 +14,7 @@ fn implementation() -> String {
 }
 
 fn identity() -> Program {
-    Program::c("identity").source("harness/identity.c").flag("-pedantic").flag("-Werror")
+    Program::c("identity").source("harness/identity.c").strict()
 }
 
 const NO_ARGS: [&str; 0] = [];

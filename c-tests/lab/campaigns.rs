@@ -13,7 +13,7 @@
 //! | `positions` | how far `pos` is from the objects (`tests/extension/position.c`) | the share of two million hits: 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
 //! | `planar` | flat objects in a plane (`tests/extension/planar.c`) | pairs: 20000 |
-//! | `truth` | the truth against itself and all of the certified pairs | |
+//! | `truth` | the truth (`truth.c`) against itself, the certified pairs and the recorded contacts | random pairs, step: 100000 1 |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | digests that `cmake/packages/cross.sh` compares between processors | |
 
@@ -41,7 +41,22 @@ fn elsewhere(path: &str) -> Executable {
 }
 
 fn worst_case() -> Executable {
-    programs::beside_libccd(Program::c("worst_case").source("lab/worst_case.c"))
+    programs::beside_libccd(Program::c("worst_case").source("lab/worst_case.c")).build()
+}
+
+/// Runs the check of the truth on the recorded contacts and on every pair set.
+#[cfg(not(feature = "single"))]
+fn truth(given: &[String]) {
+    let folder = harness::root().join("c-tests");
+    let entries = std::fs::read_dir(folder.join("bench/pairs")).expect("the pair sets");
+    let sets =
+        entries.map(|entry| entry.expect("a file").path()).filter(|path| path.extension().is_some_and(|e| e == "bin"));
+    let mut files: Vec<_> = sets.map(|path| path.display().to_string()).collect();
+    files.sort();
+    files.insert(0, folder.join("tools/record/contacts.bin").display().to_string());
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let program = Program::c("truth").strict().source("lab/truth.c").flag("-DOURS_ALONE").link_ours_static().build();
+    show(&program, given, &[&["100000", "1"], &files[..]].concat());
 }
 
 fn main() {
@@ -50,17 +65,17 @@ fn main() {
     let given: Vec<String> = arguments.collect();
     let list = |name: &str| [vec![name.to_owned()], given.clone()].concat();
     match name.as_str() {
-        "rates" => show(&program("judged"), &list("categories"), &["", "2000"]),
-        "wide" => show(&program("judged"), &list("hard"), &["", "1000", "-1", "0", "1"]),
+        "rates" => show(&program("judged").build(), &list("categories"), &["", "2000"]),
+        "wide" => show(&program("judged").build(), &list("hard"), &["", "1000", "-1", "0", "1"]),
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
         "positions" => show(&elsewhere("extension/position"), &given, &["1"]),
         "planar" => show(&elsewhere("extension/planar"), &given, &["20000"]),
         "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]
-        "truth" => show(&programs::alone("truth"), &programs::truth_arguments("100000", "1"), &[]),
+        "truth" => truth(&given),
         #[cfg(not(feature = "single"))]
-        "ledger" => show(&program("judged"), &[], &["ledger"]),
+        "ledger" => show(&program("judged").build(), &[], &["ledger"]),
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
             eprintln!(

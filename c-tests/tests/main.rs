@@ -10,6 +10,17 @@ mod harness;
 #[cfg(not(feature = "single"))]
 mod measuring;
 
+/// Defines tests that each run a program with some arguments.
+macro_rules! run_programs {
+    ($($(#[$attribute:meta])* $test:ident: $program:expr, $arguments:expr;)+) => {$(
+        $(#[$attribute])*
+        #[test]
+        fn $test() {
+            $program.build().run($arguments);
+        }
+    )+};
+}
+
 // What programs see.
 #[path = "extension/api.rs"]
 mod api;

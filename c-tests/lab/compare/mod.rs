@@ -259,7 +259,7 @@ fn written_cases_replay() {
         assert!(screen.contains(path.to_str().expect("a path")), "{screen}");
         // with libccd's header alone and the compiler's strictest warnings
         let case = Program::c("case").source(path).system_headers();
-        let case = on_libccd(case.flag("-pedantic").flag("-Werror"));
+        let case = on_libccd(case.strict());
         assert_eq!(case.run_to_end([""; 0]).0.code(), Some(1), "{path:?}");
         let right = case.swapped().run([""; 0]).stdout;
         assert!(right.contains(": right"), "{right}");

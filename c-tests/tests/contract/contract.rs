@@ -25,7 +25,7 @@ fn calls() -> Vec<(&'static str, bool)> {
 
 /// Returns a program of this directory.
 fn program(name: &str) -> Program {
-    Program::c(name).source(format!("tests/contract/{name}.c")).flag("-pedantic").flag("-Werror")
+    Program::c(name).source(format!("tests/contract/{name}.c")).strict()
 }
 
 /// Returns a program that runs on this library alone.
@@ -263,11 +263,6 @@ fn headers_compile_without_warnings() {
 
 // --- behaviour ------------------------------------------------------------------
 
-#[test]
-fn distances_of_a_point_to_segments_and_triangles() {
-    on_this_library("point_distance").build().run([harness::rounds(20_000)]);
-}
-
 fn polytope_program() -> Program {
     program("polytope").standard("gnu99")
 }
@@ -315,39 +310,15 @@ fn polytope_functions_take_no_more_instructions_than_libccd() {
     }
 }
 
-#[test]
-fn callbacks() {
-    on_this_library("callbacks").library("pthread").build().run(NO_ARGS);
-}
-
-#[test]
-fn arguments() {
-    on_this_library("arguments").build().run([harness::rounds(100)]);
-}
-
-#[test]
-fn objects_that_touch_are_a_miss() {
-    on_this_library("touches").build().run([harness::rounds(20_000)]);
-}
-
-#[test]
-fn memory() {
-    on_this_library("memory").without_tools().build().run(NO_ARGS);
-}
-
-#[test]
-fn threads() {
-    on_this_library("threads").library("pthread").build().run(NO_ARGS);
-}
-
-#[test]
-fn longjmp_out_of_callbacks() {
-    on_this_library("exceptions").build().run([harness::rounds(20)]);
-    on_this_library("exceptions").link_ours_static().build().run([harness::rounds(20)]);
-}
-
-#[test]
-fn exceptions_out_of_callbacks() {
-    on_this_library("exceptions").in_cpp().build().run([harness::rounds(20)]);
-    on_this_library("exceptions").in_cpp().link_ours_static().build().run([harness::rounds(20)]);
+run_programs! {
+    distances_of_a_point_to_segments_and_triangles: on_this_library("point_distance"), [harness::rounds(20_000)];
+    callbacks: on_this_library("callbacks").library("pthread"), NO_ARGS;
+    arguments: on_this_library("arguments"), [harness::rounds(100)];
+    objects_that_touch_are_a_miss: on_this_library("touches"), [harness::rounds(20_000)];
+    memory: on_this_library("memory").without_tools(), NO_ARGS;
+    threads: on_this_library("threads").library("pthread"), NO_ARGS;
+    longjmp_out_of_callbacks: on_this_library("exceptions"), [harness::rounds(20)];
+    longjmp_out_of_callbacks_of_the_archive: on_this_library("exceptions").link_ours_static(), [harness::rounds(20)];
+    exceptions_out_of_callbacks: on_this_library("exceptions").in_cpp(), [harness::rounds(20)];
+    exceptions_out_of_callbacks_of_the_archive: on_this_library("exceptions").in_cpp().link_ours_static(), [harness::rounds(20)];
 }

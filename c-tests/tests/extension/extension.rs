@@ -17,61 +17,22 @@ fn program(path: &str) -> Program {
     program.flag("-DOURS_ALONE").link_ours_shared()
 }
 
-/// Makes warnings errors.
-fn strict(program: Program) -> Program {
-    program.flag("-pedantic").flag("-Werror")
-}
-
 /// Returns N where one scene in N is run: 1, or `under_tool` under a tool, which checks memory.
 fn one_in(under_tool: u32) -> String {
     if harness::under_tool() { under_tool } else { 1 }.to_string()
 }
 
-#[test]
-fn cpp_wrapper() {
-    for standard in ["c++17", "c++20"] {
-        strict(program("tests/extension/wrapper.cpp")).standard(standard).build().run(NO_ARGS);
-    }
-}
-
-#[test]
-fn faults_of_support_functions_are_detected() {
-    strict(program("tests/extension/support_check.c")).build().run(NO_ARGS);
-}
-
-#[test]
-fn status_says_why_a_search_ended() {
-    strict(program("tests/extension/status.c")).build().run(NO_ARGS);
-}
-
-#[test]
-fn results_from_every_kind_of_state() {
-    strict(program("tests/extension/warm_states.c")).build().run([harness::rounds(400)]);
-}
-
-#[test]
-fn flat_objects_in_a_plane() {
-    strict(program("tests/extension/planar.c")).build().run([harness::rounds(300)]);
-}
-
-#[test]
-fn pos_is_the_center_of_pressure() {
-    strict(program("tests/extension/pressure.c")).build().run([one_in(8)]);
-}
-
-#[test]
-fn pos_is_near_both_objects() {
-    strict(program("tests/extension/position.c")).build().run(["100"]);
-}
-
-#[test]
-fn pos_is_that_of_the_whole_face() {
-    strict(program("tests/extension/faces.c")).build().run(["30"]);
-}
-
-#[test]
-fn contacts_are_exact() {
-    strict(program("tests/extension/contacts.c")).build().run([one_in(10)]);
+run_programs! {
+    cpp_wrapper: program("tests/extension/wrapper.cpp").strict(), NO_ARGS;
+    cpp_wrapper_in_cpp20: program("tests/extension/wrapper.cpp").strict().standard("c++20"), NO_ARGS;
+    faults_of_support_functions_are_detected: program("tests/extension/support_check.c").strict(), NO_ARGS;
+    status_says_why_a_search_ended: program("tests/extension/status.c").strict(), NO_ARGS;
+    results_from_every_kind_of_state: program("tests/extension/warm_states.c").strict(), [harness::rounds(400)];
+    flat_objects_in_a_plane: program("tests/extension/planar.c").strict(), [harness::rounds(300)];
+    pos_is_the_center_of_pressure: program("tests/extension/pressure.c").strict(), [one_in(8)];
+    pos_is_near_both_objects: program("tests/extension/position.c").strict(), ["100"];
+    pos_is_that_of_the_whole_face: program("tests/extension/faces.c").strict(), ["30"];
+    contacts_are_exact: program("tests/extension/contacts.c").strict(), [one_in(10)];
 }
 
 /// Checks `<ccd/fcl.hpp>`. In single precision this compiles FCL's templates for float.
@@ -117,7 +78,7 @@ fn fcl_example() {
 /// states save a tenth of the callbacks.
 #[test]
 fn pair_table_example() {
-    let output = strict(program("examples/pair_table.c")).build().run(NO_ARGS).stdout;
+    let output = program("examples/pair_table.c").strict().build().run(NO_ARGS).stdout;
     assert_eq!(output.lines().count(), 6);
     for line in output.lines() {
         let numbers = line.split(' ').filter_map(|word| word.parse::<f64>().ok());
@@ -147,7 +108,7 @@ fn rust_world() -> String {
 #[test]
 fn world_examples() {
     let [c, cpp] =
-        ["examples/world.c", "examples/world.cpp"].map(|path| strict(program(path)).build().run(NO_ARGS).stdout);
+        ["examples/world.c", "examples/world.cpp"].map(|path| program(path).strict().build().run(NO_ARGS).stdout);
     assert_eq!(c, cpp);
     if !harness::under_tool() && !harness::emulated() {
         assert_eq!(c, rust_world());

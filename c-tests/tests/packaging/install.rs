@@ -3,6 +3,9 @@
 
 //! Installs the library with CMake, and builds and runs programs on it.
 
+// The tests and the lab each use a part.
+#![allow(dead_code)]
+
 use crate::harness::{self, Executable, Precision, must_succeed, output_dir, root};
 use std::ffi::OsStr;
 use std::fs;
@@ -110,14 +113,12 @@ pub fn page(name: &str) -> String {
     fs::read_to_string(root().join(name)).expect("a page")
 }
 
-#[cfg(not(feature = "single"))]
 /// Checks a size in bytes.
 pub fn assert_small(name: &str, size: u64, most: u64) {
     println!("{name}: {size} bytes, at most {most}");
     assert!(size <= most, "{name}: {size} bytes");
 }
 
-#[cfg(not(feature = "single"))]
 pub fn size(path: &Path) -> u64 {
     fs::metadata(path).expect("a file").len()
 }

@@ -166,9 +166,7 @@ fn assert_depth_of_the_ball(output: &str) {
 
 /// Compiles a page's program without a warning.
 fn strict(program: Program, page: &str, language: &str) -> Executable {
-    let program = program.source(program_of(&format!("{page}-{language}"), page, language));
-    let program = program.flag("-pedantic").flag("-Werror");
-    program.link_ours_shared().build()
+    program.source(program_of(&format!("{page}-{language}"), page, language)).strict().build()
 }
 
 /// Runs README.md's C program on this library and, in double precision, on libccd.

@@ -8,56 +8,23 @@
 mod programs;
 
 use crate::harness::{self, Precision};
-#[cfg(not(feature = "single"))]
-use programs::alone;
 use programs::program;
 
-#[test]
-#[cfg(not(feature = "single"))]
-fn truth_agrees_with_itself_and_the_certified_sets() {
-    alone("truth").run(programs::truth_arguments("2000", "25"));
-}
-
-/// T01 to U15 and the cases of other projects, on every call, cold and warm.
-#[test]
-fn configurations() {
-    program("judged").run(["configurations"]);
-}
-
-/// Random pairs of every category, both tie rules.
-#[test]
-fn categories() {
-    program("judged").run(["categories", "300"]);
-}
-
-/// A sample of every row of bodies that are hard for one method or another.
-#[test]
-fn hard_bodies() {
-    program("judged").run(["hard", &harness::rounds(60)]);
-}
-
-/// Support points and stack of queries. A broken guarantee that is repaired fails this too:
-/// take its mark out of the table at the program's end.
-#[test]
-fn known_costs() {
-    let costs = program("costs");
-    match Precision::CURRENT {
-        Precision::Double => costs.run([""; 0]),
-        Precision::Single => costs.run(["U14"]),
-    };
-}
-
-/// The callback that is wrong along the normals of its caps. (Single precision has no tilt.)
-#[test]
-#[cfg(not(feature = "single"))]
-fn ode_cylinder() {
-    alone("ode_cylinder").run([""; 0]);
-}
-
-/// Sliding, rolling, rocking: directions, depths and contact positions.
-#[test]
-fn continuity() {
-    program("continuity").run([""; 0]);
+run_programs! {
+    /// T01 to U15 and the cases of other projects, on every call, cold and warm.
+    configurations: program("judged"), ["configurations"];
+    /// Random pairs of every category, both tie rules.
+    categories: program("judged"), ["categories", "300"];
+    /// A sample of every row of bodies that are hard for one method or another.
+    hard_bodies: program("judged"), ["hard", &harness::rounds(60)];
+    /// Support points and stack of queries. A broken guarantee that is repaired fails this too: take its mark out of the
+    /// table at the program's end.
+    known_costs: program("costs"), if cfg!(feature = "single") { &["U14"][..] } else { &[] };
+    /// The callback that is wrong along the normals of its caps. (Single precision has no tilt.)
+    #[cfg(not(feature = "single"))]
+    ode_cylinder: programs::source("ode_cylinder").flag("-DOURS_ALONE").link_ours_static(), [""; 0];
+    /// Sliding, rolling, rocking: directions, depths and contact positions.
+    continuity: program("continuity"), [""; 0];
 }
 
 /// Same bits in two runs, and in the debug and release builds.

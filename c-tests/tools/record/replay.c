@@ -7,12 +7,10 @@
  * The program is built against libccd's interface alone: one binary runs on whichever libccd.so.2 the dynamic linker
  * finds. With -DOURS_ALONE it also has this library's extension, without and with a warm state for each pair of bodies.
  *
- * usage: replay RECORDING [PASSES]         the fastest pass of each frame counts (default: 1 pass)
- *        replay RECORDING certify STRIDE   checks the recorded truth of every STRIDE-th pair by truth.h */
+ *   replay RECORDING [PASSES]     the fastest pass of each frame counts (default: 1 pass) */
 
 #define _POSIX_C_SOURCE 199309L
 #include "tools/record/recording.h"
-#include "harness/truth.h"
 #include "harness/verdict.h"
 #ifdef OURS_ALONE
 #include "harness/this_library.h"
@@ -214,42 +212,16 @@ static int replay(const recording_t *r, int passes, shape_t *body)
     return failed;
 }
 
-/* Compares the recorded truth of every stride-th pair with truth.h. Returns an exit code. */
-static int certify(const recording_t *r, size_t stride, shape_t *body)
-{
-    size_t k = 0, wrong = 0, checked = 0;
-    double widest = 0;
-    for (uint32_t f = 0; f < r->frames; f++) {
-        recording_place(r, f, body);
-        for (uint32_t i = 0; i < r->frame_pairs[f]; i++, k++) {
-            const recording_pair_t *p = &r->pair[k];
-            if (k % stride)
-                continue;
-            truth_t t = truth_depth_within(&body[p->a], &body[p->b], 1e-10);
-            checked++;
-            widest = fmax(widest, p->upper - p->lower);
-            /* both intervals contain the same number */
-            if (!(p->lower <= t.depth + 1e-12 && t.lower <= p->upper + 1e-12)) {
-                printf("pair %zu: recorded %.17g to %.17g, truth %.17g to %.17g\n", k, p->lower, p->upper, t.lower, t.depth);
-                wrong++;
-            }
-        }
-    }
-    printf("%zu pairs, widest bounds %.1e m, %zu wrong\n", checked, widest, wrong);
-    return checked == 0 || wrong != 0;
-}
-
 int main(int argc, char **argv)
 {
     recording_t r;
-    const int is_certify = argc == 4 && strcmp(argv[2], "certify") == 0;
-    const int number = argc > 2 ? atoi(argv[argc - 1]) : 1; /* passes, or stride */
-    if ((argc != 2 && argc != 3 && !is_certify) || number < 1 || recording_read(argv[1], &r) != 0) {
-        fprintf(stderr, "usage: %s RECORDING [PASSES | certify STRIDE] (a whole recording, with its truth)\n", argv[0]);
+    const int passes = argc > 2 ? atoi(argv[2]) : 1;
+    if ((argc != 2 && argc != 3) || passes < 1 || recording_read(argv[1], &r) != 0) {
+        fprintf(stderr, "usage: %s RECORDING [PASSES] (a whole recording, with its truth)\n", argv[0]);
         return 2;
     }
     shape_t *body = (shape_t *)malloc(r.bodies * sizeof *body);
-    const int failed = !body || (is_certify ? certify(&r, (size_t)number, body) : replay(&r, number, body));
+    const int failed = !body || replay(&r, passes, body);
     free(body);
     recording_free(&r);
     return failed;
