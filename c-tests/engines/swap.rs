@@ -14,7 +14,7 @@ use crate::harness::{Precision, library};
 use programs::{Method, compared, fcl_distance, ours_judged, program, run_all};
 use results::swapped;
 
-/// To 7 mm, as `pos` itself (`tests/extension/pressure.c`); a point contact is where libccd has it.
+/// To 7 mm, as `pos` itself (`tests/extension/pos.c`); a point contact is where libccd has it.
 #[test]
 fn fcl_collide_and_positions() {
     let outputs = run_all(&compared(program("fcl_static.cpp"), "0"), "1 20");

@@ -10,7 +10,7 @@
 //! | `wide` | every call on bodies that are hard for one method or another | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
-//! | `positions` | how far `pos` is from the objects (`tests/extension/position.c`) | the share of two million hits: 1 |
+//! | `positions` | how far `pos` is from the objects (`tests/extension/pos.c`) | the share of two million hits: 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
 //! | `planar` | flat objects in a plane (`tests/extension/planar.c`) | pairs: 20000 |
 //! | `truth` | the truth (`truth.c`) against itself, the certified pairs and the recorded contacts | random pairs, step: 100000 1 |
@@ -69,7 +69,7 @@ fn main() {
         "wide" => show(&program("judged").build(), &list("hard"), &["", "1000", "-1", "0", "1"]),
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
-        "positions" => show(&elsewhere("extension/position"), &given, &["1"]),
+        "positions" => show(&elsewhere("extension/pos"), &list("near"), &["", "1"]),
         "planar" => show(&elsewhere("extension/planar"), &given, &["20000"]),
         "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]

@@ -136,7 +136,7 @@ try tests/extension/support_check.c
 try examples/pair_table.c
 try examples/world.c
 try tests/extension/warm_states.c
-try tests/extension/pressure.c
+try tests/extension/pos.c pressure
 try tests/stability/judged.c configurations
 try tools/record/replay.c contacts.bin
 

@@ -43,7 +43,7 @@
 //!
 //! *Accuracy.* The root mean square error of the linear model is 1 to 2 % of the smaller object's extent if the
 //! depth is 1 % of it, 2 to 3 % at 3 %, 6 % at 10 %, and 12 to 18 % at 30 %. For comparison, the middle of the
-//! witness points: 4 to 9, 8 to 17, 15 to 28 and 26 to 41 % (`c-tests/tests/extension/pressure.c`).
+//! witness points: 4 to 9, 8 to 17, 15 to 28 and 26 to 41 % (`c-tests/tests/extension/pos.c`).
 
 use crate::contact::fan::{Fan, area2};
 use crate::contact::feature::{FeatureQuery, KnownPair, MAX_KNOWN};

@@ -18,7 +18,7 @@
 //!
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
 //! the whole query; here only the support function is evaluated along tilted normals. Errors are those of
-//! `c-tests/tests/extension/faces.c` and `pressure.c`.
+//! `c-tests/tests/extension/pos.c`.
 
 use crate::contact::fan::Fan;
 use crate::contact::frame::ContactFrame;

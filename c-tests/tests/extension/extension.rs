@@ -29,9 +29,9 @@ run_programs! {
     status_says_why_a_search_ended: program("tests/extension/status.c").strict(), NO_ARGS;
     results_from_every_kind_of_state: program("tests/extension/warm_states.c").strict(), [harness::rounds(400)];
     flat_objects_in_a_plane: program("tests/extension/planar.c").strict(), [harness::rounds(300)];
-    pos_is_the_center_of_pressure: program("tests/extension/pressure.c").strict(), [one_in(8)];
-    pos_is_near_both_objects: program("tests/extension/position.c").strict(), ["100"];
-    pos_is_that_of_the_whole_face: program("tests/extension/faces.c").strict(), ["30"];
+    pos_is_the_center_of_pressure: program("tests/extension/pos.c").strict(), ["pressure", &one_in(8)];
+    pos_is_near_both_objects: program("tests/extension/pos.c").strict(), ["near", "100"];
+    pos_is_that_of_the_whole_face: program("tests/extension/pos.c").strict(), ["faces", "30"];
     contacts_are_exact: program("tests/extension/contacts.c").strict(), [one_in(10)];
 }
 

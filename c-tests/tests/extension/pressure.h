@@ -7,7 +7,7 @@
 #ifndef TESTS_PRESSURE_H
 #define TESTS_PRESSURE_H
 
-#include "harness/shapes.h"
+#include "harness/truth.h"
 
 /* Interval on a line; empty where from > to. */
 typedef struct { double from, to; } span_t;
@@ -191,11 +191,10 @@ static inline double center_of_pressure(const shape_t *a, const shape_t *b, cons
     memcpy(c.origin, place, sizeof c.origin);
     for (int i = 0; i < 3; i++)
         c.u[i] = (i == least) - n[least] * n[i];
-    const double length = sqrt(c.u[0] * c.u[0] + c.u[1] * c.u[1] + c.u[2] * c.u[2]);
+    const double length = sqrt(truth_dot3(c.u, c.u));
     for (int i = 0; i < 3; i++)
         c.u[i] /= length;
-    for (int i = 0; i < 3; i++)
-        c.v[i] = n[(i + 1) % 3] * c.u[(i + 2) % 3] - n[(i + 2) % 3] * c.u[(i + 1) % 3];
+    truth_cross3(n, c.u, c.v);
     for (int i = 0; i < SECTORS; i++)
         pressure_edge(&c, i * turn, edge[i]);
     for (int i = 0; i < SECTORS; i++)
