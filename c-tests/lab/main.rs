@@ -22,6 +22,7 @@ mod charts_test;
 mod compare;
 #[cfg(not(feature = "single"))]
 mod engines;
+mod fcl;
 mod packaging;
 #[cfg(not(feature = "single"))]
 #[path = "engines/simulations.rs"]

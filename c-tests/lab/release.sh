@@ -46,6 +46,9 @@ packages() {
 sh c-tests/setup.sh
 step charts cargo test --no-fail-fast -p lab charts_test::
 step compare cargo test --no-fail-fast -p lab compare::
+step fcl cargo test -p lab fcl::
+step fcl-single cargo test -p lab --features single fcl::
+step fcl-address sh c-tests/tools/check.sh address -p lab --test lab fcl::
 step simulations cargo test --no-fail-fast -p lab simulations::
 step packaging cargo test --no-fail-fast -p lab packaging::
 step packaging-single cargo test --no-fail-fast -p lab --features single packaging::

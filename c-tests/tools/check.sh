@@ -8,7 +8,7 @@
 #   check.sh helgrind [ARGUMENT...]   valgrind's check for data races, likewise
 #   check.sh miri     [ARGUMENT...]   Miri through the exported functions; needs
 #                                     rustup component add --toolchain nightly miri rust-src
-# The arguments are cargo test's, as the names of tests (contract::) and --features single.
+# The arguments are cargo test's: without -p tests of the commit, by their names (contract::), and --features single.
 
 set -eu
 cd "$(dirname "$0")/../.."
@@ -35,4 +35,5 @@ miri) exec cargo +nightly miri test --test integration "$@" api:: ;;
     exit 2
     ;;
 esac
-exec cargo test --no-fail-fast --test integration "$@"
+[ "${1:-}" = -p ] || set -- --test integration "$@"
+exec cargo test --no-fail-fast "$@"

@@ -35,26 +35,7 @@ run_programs! {
     contacts_are_exact: program("tests/extension/contacts.c").strict(), [one_in(10)];
 }
 
-/// Checks `<ccd/fcl.hpp>`. In single precision this compiles FCL's templates for float.
-/// (With a sanitizer gcc takes half a minute for each standard.)
-#[test]
-fn fcl_header() {
-    let (standards, flags): (&[&str], [&str; 2]) = match Precision::CURRENT {
-        Precision::Double if harness::under_tool() => (&["c++17"], ["-O1", "-g"]),
-        Precision::Double => (&["c++11", "c++17"], ["-O1", "-g0"]),
-        Precision::Single => (&["c++11"], ["-O0", "-g0"]),
-    };
-    for standard in standards {
-        let mut program = program("tests/extension/fcl.cpp").standard(standard).library("fcl");
-        for flag in ["-D_GNU_SOURCE", flags[0], flags[1], "-isystem/usr/include/eigen3"] {
-            program = program.flag(flag);
-        }
-        let poses = if harness::under_tool() { "1" } else { "2" };
-        program.build().run([poses]);
-    }
-}
-
-/// Checks the output of the example for FCL: no contact at first; then four of the box and one of the ball.
+/// Checks the output of the example for FCL (all of `<ccd/fcl.hpp>`: `lab/fcl.rs`): no contact at first; then four of the box and one of the ball.
 #[cfg(not(feature = "single"))]
 #[test]
 fn fcl_example() {
