@@ -3,6 +3,8 @@
 
 //! The tests that run before a release (`release.sh`), in one program: `cargo test -p lab MODULE::` runs one module's.
 
+#[path = "../tests/extension/api.rs"]
+mod api;
 #[path = "../harness/mod.rs"]
 mod harness;
 #[path = "../tests/packaging/install.rs"]
@@ -23,6 +25,7 @@ mod compare;
 #[cfg(not(feature = "single"))]
 mod engines;
 mod fcl;
+mod miri;
 mod packaging;
 #[cfg(not(feature = "single"))]
 #[path = "engines/simulations.rs"]

@@ -49,6 +49,7 @@ step compare cargo test --no-fail-fast -p lab compare::
 step fcl cargo test -p lab fcl::
 step fcl-single cargo test -p lab --features single fcl::
 step fcl-address sh c-tests/tools/check.sh address -p lab --test lab fcl::
+step miri cargo test -p lab miri::
 step simulations cargo test --no-fail-fast -p lab simulations::
 step packaging cargo test --no-fail-fast -p lab packaging::
 step packaging-single cargo test --no-fail-fast -p lab --features single packaging::

@@ -55,3 +55,7 @@ mod support_counts;
 // The tests' own tools.
 #[path = "../harness/harness.rs"]
 mod harness_itself;
+// Natively in the lab.
+#[cfg(miri)]
+#[path = "../lab/miri.rs"]
+mod miri;

@@ -29,7 +29,7 @@ memcheck)
 helgrind)
     export C_TESTS_RUNNER="valgrind --tool=helgrind --quiet --error-exitcode=99"
     ;;
-miri) exec cargo +nightly miri test --test integration "$@" api:: ;;
+miri) exec cargo +nightly miri test --test integration "$@" -- api:: miri:: ;;
 *)
     echo "usage: check.sh address|memcheck|helgrind|miri [cargo test's arguments]" >&2
     exit 2

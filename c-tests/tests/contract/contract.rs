@@ -88,14 +88,15 @@ fn symbols_are_those_of_libccd_and_the_extension() {
     assert_eq!(dynamic_symbols(&ours("libccd.so")), expected);
 }
 
-/// Checks that every call of the table has a C++ form and is called by the Rust tests, which Miri runs,
+/// Checks that every call of the table has a C++ form and is called by what Miri runs,
 /// and that the extension's headers declare the calls of the extension.
 #[test]
 #[cfg_attr(feature = "single", ignore = "the same in both precisions")]
 fn calls_are_in_every_interface() {
     let read = |file: &str| std::fs::read_to_string(harness::root().join(file)).expect(file);
     let headers = read("include/ccd/warm.h") + &read("include/ccd/paper.h");
-    let places = [("api.rs", read("c-tests/tests/extension/api.rs")), ("ccd.hpp", read("include/ccd/ccd.hpp"))];
+    let miri = read("c-tests/tests/extension/api.rs") + &read("c-tests/lab/miri.rs");
+    let places = [("Miri", miri), ("ccd.hpp", read("include/ccd/ccd.hpp"))];
     assert!(calls().len() > 20);
     for (name, is_extension) in calls() {
         let call = format!("{name}(");
