@@ -7,8 +7,6 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::callgrind;
-use super::csv;
 use super::libraries::Libraries;
 use super::measure::{Row, Runner, support_value};
 use super::methods::{Start, select};
@@ -118,7 +116,7 @@ fn sampled(recorded: &Scene, name: &str, is_wanted: impl Fn(&Pair) -> bool) -> S
 
 /// Measures every row, or in the process under callgrind returns none. The command runs this function in this program.
 pub fn measure(libraries: &Libraries, command: &[&str], with_libccd: bool) -> Result<Vec<Cost>, String> {
-    let mut runner = Runner::new(libraries, 0).with_instructions(1, command)?;
+    let mut runner = Runner::new(libraries).with_instructions(1, command)?;
     let mut rows = Vec::new();
     let mut add = |scene: &Scene, ours: &[Listed], libccds: &[Listed]| {
         let list = [if with_libccd { libccds } else { &[] }, ours].concat();
@@ -144,19 +142,4 @@ pub fn measure(libraries: &Libraries, command: &[&str], with_libccd: bool) -> Re
         }
     }
     Ok(rows)
-}
-
-/// Writes the file anew from what is measured now, and prints the rows that cost more than is allowed.
-pub fn record(libraries: &Libraries) {
-    let rows = measure(libraries, &["record"], true).unwrap_or_else(|why| panic!("not counted: {why}"));
-    if callgrind::is_counting() {
-        return;
-    }
-    let (_, recorded) = csv::read::<Cost>(&file());
-    for (now, then) in rows.iter().filter_map(|now| Some((now, now.find(&recorded)?))) {
-        if now.is_above(then) {
-            println!("raised: {}", now.beside(then));
-        }
-    }
-    csv::write(&file(), &libraries.toolchain, &rows);
 }

@@ -3,10 +3,8 @@
 
 //! Runs methods over a scene, judges their answers by the truth, and measures their cost.
 //!
-//! Support points and errors are exact and repeatable. Times are medians over repetitions in which all methods take turns.
+//! Support points and errors are exact and repeatable. (Times: `lab/charts/times.rs`.)
 
-use std::ffi::{c_int, c_long};
-use std::hint::black_box;
 use std::vec;
 
 use nalgebra::Vector3;
@@ -82,11 +80,14 @@ impl Row {
     }
 }
 
+/// Measures the mean time of a query of each method, ns.
+pub type Times = Box<dyn Fn(&Scene, &mut [Method]) -> Vec<f64>>;
+
 /// The one runner of all measurements.
 pub struct Runner<'a> {
     pub libraries: &'a Libraries,
-    /// Repetitions of which times are medians; 0: no times.
-    repetitions: usize,
+    /// None: no times.
+    pub times: Option<Times>,
     /// Instructions are counted on every n-th pair.
     every: usize,
     /// Counts in the order of the methods, if instructions are counted.
@@ -94,8 +95,8 @@ pub struct Runner<'a> {
 }
 
 impl<'a> Runner<'a> {
-    pub fn new(libraries: &'a Libraries, repetitions: usize) -> Self {
-        Self { libraries, repetitions, every: 1, counts: None }
+    pub fn new(libraries: &'a Libraries) -> Self {
+        Self { libraries, times: None, every: 1, counts: None }
     }
 
     /// Also counts instructions on every n-th pair, for which it runs this program under callgrind with the words of a
@@ -114,7 +115,8 @@ impl<'a> Runner<'a> {
             methods.iter_mut().for_each(|method| callgrind::count(self.libraries, scene, method, self.every));
             return Vec::new();
         }
-        let mut times = times(scene, &mut methods, self.repetitions).into_iter();
+        let times = self.times.as_ref().map(|times| times(scene, &mut methods));
+        let mut times = times.into_iter().flatten();
         let row = |method: &mut Method| {
             let mut row = judge(self.libraries, scene, method);
             row.ns = times.next();
@@ -152,14 +154,6 @@ fn mean(values: &[f64]) -> f64 {
 /// Returns the larger number; NaN if one is.
 fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
-}
-
-/// Returns the median; 0 of none.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let value = |k: usize| values.get(k).copied().unwrap_or_default();
-    let half = values.len() / 2;
-    if values.len() % 2 == 1 { value(half) } else { (value(half.saturating_sub(1)) + value(half)) / 2.0 }
 }
 
 /// Tolerance by which methods are judged whose own is built in.
@@ -239,54 +233,4 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
     row.max_error = errors.into_iter().fold(0.0, larger);
     row.mean_error_1mm = mean(&near);
     row
-}
-
-/// Returns the processor time of this thread in nanoseconds, which leaves out other processes.
-fn thread_nanoseconds() -> f64 {
-    unsafe extern "C" {
-        fn clock_gettime(clock: c_int, time: *mut [c_long; 2]) -> c_int;
-    }
-    /// CLOCK_THREAD_CPUTIME_ID of Linux.
-    const THREAD: c_int = 3;
-    let mut time = [0; 2];
-    // SAFETY: a timespec of 64-bit Linux: the benchmark compares with Debian's libccd.
-    unsafe { clock_gettime(THREAD, &mut time) };
-    1e9 * time[0] as f64 + time[1] as f64
-}
-
-/// Independent poses timed in one go: long against the clock's resolution, short against a time slice.
-const CHUNK: usize = 25;
-
-/// Returns the mean time of a query of each method, ns; none without repetitions. All methods take turns over the scene;
-/// the median of every chunk of poses (or motion) counts, which leaves out what else the machine does meanwhile.
-fn times(scene: &Scene, methods: &mut [Method], repetitions: usize) -> Vec<f64> {
-    let mut passes = vec![Vec::with_capacity(repetitions); methods.len()];
-    for _ in 0..repetitions {
-        for (method, times) in methods.iter_mut().zip(&mut passes) {
-            times.push(pass(scene, method));
-        }
-    }
-    let mean_of_medians = |passes: Vec<Vec<(f64, usize)>>| {
-        let first = passes.first()?;
-        let chunks = 0..first.len();
-        let ns: f64 = chunks.map(|k| median(passes.iter().map(|pass| pass[k].0).collect())).sum();
-        Some(ns / first.iter().map(|(_, queries)| queries).sum::<usize>() as f64)
-    };
-    passes.into_iter().filter_map(mean_of_medians).collect()
-}
-
-/// Returns time, ns, and number of the queries of every chunk; a warm method's first frames are not timed.
-fn pass(scene: &Scene, method: &mut Method) -> Vec<(f64, usize)> {
-    let (chunks, num_untimed): (Vec<&[Pair]>, _) = match method.is_warm() {
-        true => (scene.pairs.chunk_by(|_, next| next.frame > 0).collect(), 1),
-        false => (scene.pairs.chunks(CHUNK).collect(), 0),
-    };
-    let time = |chunk: &[Pair]| {
-        let (untimed, timed) = chunk.split_at(num_untimed);
-        untimed.iter().for_each(|pair| _ = black_box((method.query)(pair)));
-        let begin = thread_nanoseconds();
-        timed.iter().for_each(|pair| _ = black_box((method.query)(pair)));
-        (thread_nanoseconds() - begin, timed.len())
-    };
-    chunks.into_iter().map(time).collect()
 }

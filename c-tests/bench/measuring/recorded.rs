@@ -7,7 +7,6 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::csv;
 use super::libraries::Libraries;
 use super::measure::{Row, Runner};
 use super::methods::{Start, select};
@@ -68,6 +67,13 @@ pub struct Recorded {
     pub nonminimal: f64,
 }
 
+impl From<Row> for Recorded {
+    fn from(row: Row) -> Self {
+        let Row { set, method, start, supports, mean_error_1mm, nonminimal, .. } = row;
+        Self { set, method, start, tolerance: row.tolerance.unwrap_or_default(), supports, mean_error_1mm, nonminimal }
+    }
+}
+
 pub fn file() -> PathBuf {
     harness::root().join("c-tests/bench/measuring/support_counts.csv")
 }
@@ -77,21 +83,7 @@ pub fn measure(libraries: &Libraries) -> Vec<Row> {
     let rows = |set: &&str| {
         let scene = Scene::load(libraries, set, usize::MAX);
         let list = if scene.is_motion() { &ON_MOTIONS[..] } else { &ON_POSES };
-        Runner::new(libraries, 0).rows(&scene, select(libraries, list))
+        Runner::new(libraries).rows(&scene, select(libraries, list))
     };
     [&RANDOM[..], &SHALLOW, &MOTIONS].concat().iter().flat_map(rows).collect()
-}
-
-/// Writes the file anew from what is measured now.
-pub fn record(libraries: &Libraries) {
-    let recorded = measure(libraries).into_iter().map(|row| Recorded {
-        set: row.set,
-        method: row.method,
-        start: row.start,
-        tolerance: row.tolerance.unwrap_or_default(),
-        supports: row.supports,
-        mean_error_1mm: row.mean_error_1mm,
-        nonminimal: row.nonminimal,
-    });
-    csv::write(&file(), &libraries.machine, &recorded.collect::<Vec<_>>());
 }

@@ -32,7 +32,7 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
         let pair = small.strip_suffix("_trajS").expect("a motion");
         for (name, degrees) in STEPS {
             let scene = Scene::load(bench.libraries, &format!("{pair}_{name}"), bench.poses());
-            let rows = Runner::new(bench.libraries, 0).rows(&scene, select(bench.libraries, &METHODS));
+            let rows = Runner::new(bench.libraries).rows(&scene, select(bench.libraries, &METHODS));
             all.extend(rows.into_iter().map(|row| Row { set: pair.to_owned(), x: Some(degrees), ..row }));
         }
     }

@@ -10,7 +10,7 @@ use super::{OUT, Page, figure, results};
 use crate::charts::peers::{self, Peers};
 use crate::harness;
 use crate::measuring::libraries::Libraries;
-use crate::measuring::measure::{Row, Runner};
+use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
 use crate::measuring::scene::Scene;
 use crate::measuring::{callgrind, csv};
@@ -68,7 +68,7 @@ pub fn run() {
     scene.pairs.retain(|pair| pair.truth.depth > 1e-9);
     let mut methods = select(&libraries, &METHODS);
     methods.extend(peers.methods(&libraries));
-    let timed = || Runner::new(&libraries, 5);
+    let timed = || super::times::runner(&libraries, 5);
     let mut runner = timed().with_instructions(EVERY, &["engines"]).unwrap_or_else(|why| {
         println!("instructions not counted: {}", why.lines().last().unwrap_or_default());
         timed()

@@ -10,8 +10,10 @@ mod harness;
 #[path = "../../bench/measuring/mod.rs"]
 mod measuring;
 
+use measuring::ledger::{self, Cost};
 use measuring::libraries::Libraries;
-use measuring::{callgrind, ledger, recorded};
+use measuring::recorded::{self, Recorded};
+use measuring::{callgrind, csv};
 
 const USAGE: &str = "\
 usage: cargo bench -p lab -- COMMAND
@@ -43,10 +45,20 @@ fn main() {
     }
 }
 
+/// Writes both files anew from what is measured now, and prints the costs that are above what is allowed.
 fn record() {
     let libraries = Libraries::open();
-    ledger::record(&libraries);
-    if !callgrind::is_counting() {
-        recorded::record(&libraries);
+    let costs = ledger::measure(&libraries, &["record"], true).unwrap_or_else(|why| panic!("not counted: {why}"));
+    if callgrind::is_counting() {
+        return;
     }
+    let (_, recorded) = csv::read::<Cost>(&ledger::file());
+    for (now, then) in costs.iter().filter_map(|now| Some((now, now.find(&recorded)?))) {
+        if now.is_above(then) {
+            println!("raised: {}", now.beside(then));
+        }
+    }
+    csv::write(&ledger::file(), &libraries.toolchain, &costs);
+    let rows = recorded::measure(&libraries).into_iter().map(Recorded::from);
+    csv::write(&recorded::file(), &libraries.machine, &rows.collect::<Vec<_>>());
 }

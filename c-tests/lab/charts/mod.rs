@@ -12,6 +12,7 @@ pub mod figure;
 pub mod paper;
 pub mod peers;
 pub mod results;
+pub mod times;
 
 use std::path::PathBuf;
 
@@ -47,7 +48,7 @@ impl<'a> Bench<'a> {
 
     /// Returns a runner that takes times.
     pub fn timed(&self) -> Runner<'a> {
-        Runner::new(self.libraries, if self.quick { 3 } else { 9 })
+        times::runner(self.libraries, if self.quick { 3 } else { 9 })
     }
 }
 

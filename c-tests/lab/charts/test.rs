@@ -45,7 +45,7 @@ fn deep_walks_to_local_minima() {
     for name in ["p12_p12", "p42_p42", "p162_p162"] {
         let scene = Scene::load(&libraries, name, 200);
         let meshes = Polytope::of_set(name).expect("two polytopes");
-        for row in Runner::new(&libraries, 0).rows(&scene, deep::methods(&libraries, &meshes, Start::Guess5)) {
+        for row in Runner::new(&libraries).rows(&scene, deep::methods(&libraries, &meshes, Start::Guess5)) {
             assert!(row.unsound < 1e-12 && row.missed == 0.0, "{row:?}");
             assert!(row.shallow == 0.0 && row.nonminimal < 5.0, "{row:?}");
         }
