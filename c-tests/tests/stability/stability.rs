@@ -17,8 +17,7 @@ run_programs! {
     categories: program("judged"), ["categories", "300"];
     /// A sample of every row of bodies that are hard for one method or another.
     hard_bodies: program("judged"), ["hard", &harness::rounds(60)];
-    /// Support points and stack of queries. A broken guarantee that is repaired fails this too: take its mark out of the
-    /// table at the program's end.
+    /// Support points and stack of queries.
     known_costs: program("costs"), if cfg!(feature = "single") { &["U14"][..] } else { &[] };
     /// The callback that is wrong along the normals of its caps. (Single precision has no tilt.)
     #[cfg(not(feature = "single"))]
