@@ -4,9 +4,10 @@
 //! Compares this library with the penetration solvers of other engines over the overlapping pairs of the recorded
 //! contacts: instructions, support points, time, wrong answers.
 
+use std::path::Path;
 use std::process::Command;
 
-use super::{OUT, Page, figure, results};
+use super::{OUT, results};
 use crate::charts::peers::{self, Peers};
 use crate::harness;
 use crate::measuring::libraries::Libraries;
@@ -44,17 +45,7 @@ fn table(rows: &[Row]) -> String {
     results::markdown(head, lines)
 }
 
-pub fn draw(page: &Page, rows: &[Row]) {
-    let Some(contacts) = rows.first().map(|r| r.overlaps) else { return };
-    let notes = [
-        format!("{contacts} recorded contacts of an ODE pile; pale: support functions, full: the solver."),
-        "Wrong: overlap missed, depth off by more than 1 %, or a direction that is more than 1 % deeper.".to_owned(),
-        page.footer(),
-    ];
-    figure::bars(&page.out.join("engines.svg"), "Instructions of a query", rows, &notes);
-}
-
-/// Downloads what engines.sh can, measures all, and writes the table, its numbers and the picture.
+/// Downloads what engines.sh can, measures all, and writes the table and its numbers.
 pub fn run() {
     let libraries = Libraries::open();
     if !callgrind::is_counting() {
@@ -79,9 +70,7 @@ pub fn run() {
     }
     peers.print_missing();
     rows.sort_by(|a, b| a.instructions().total_cmp(&b.instructions()));
-    let page = Page { out: OUT.into(), machine: libraries.machine.clone() };
-    csv::write(&page.out.join("engines.csv"), &page.machine, &rows);
-    draw(&page, &rows);
+    csv::write(&Path::new(OUT).join("engines.csv"), &libraries.machine, &rows);
     let table = table(&rows);
     println!("{table}");
     harness::write_between_marks("README.md", "table engines", &format!("{table}\n"));

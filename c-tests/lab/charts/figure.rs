@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Pictures of the charts as SVG: panels of curves over logarithmic axes with one legend below, and bars.
+//! Pictures of the charts as SVG: panels of curves over logarithmic axes with one legend below.
 
 use std::path::Path;
 
@@ -86,29 +86,17 @@ impl Panel<'_> {
     }
 }
 
-fn write(path: &Path, title: &str, height: u32, notes: &[String], draw: impl FnOnce(&Area) -> Drawn) {
-    let foot = 20 * notes.len() as u32 + 10;
-    let make = || -> Drawn {
-        let root = SVGBackend::new(path, (900, 40 + height + foot)).into_drawing_area();
-        root.fill(&WHITE)?;
-        let (area, below) = root.titled(title, ("sans-serif", 20))?.split_vertically(height);
-        for (note, y) in notes.iter().zip((4..).step_by(20)) {
-            below.draw(&Text::new(note.clone(), (16, y), ("sans-serif", 12)))?;
-        }
-        draw(&area)?;
-        Ok(root.present()?)
-    };
-    make().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-}
-
 /// Draws panels in rows of `columns`, then the legend and the notes.
 pub fn grid(path: &Path, title: &str, columns: usize, mut panels: Vec<Panel>, notes: &[String]) {
     panels.retain(|panel| !panel.rows.is_empty());
     let legend = legend(panels.iter().flat_map(|panel| panel.rows.iter().copied()));
     let rows = panels.len().div_ceil(columns);
-    let top = rows as u32 * 290;
-    write(path, title, top + 10 * legend.len() as u32 + 20, notes, |area| {
-        let (head, below) = area.split_vertically(top);
+    let (top, under) = (rows as u32 * 290, 20 * legend.len().div_ceil(2) as i32 + 16);
+    let make = || -> Drawn {
+        let height = 50 + top + under as u32 + 20 * notes.len() as u32;
+        let root = SVGBackend::new(path, (900, height)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (head, below) = root.titled(title, ("sans-serif", 20))?.split_vertically(top);
         head.split_evenly((rows, columns)).iter().zip(&panels).try_for_each(|(cell, panel)| panel.draw(cell))?;
         for (k, row) in (0..).zip(&legend) {
             let (x, y) = (16 + 440 * (k % 2), 8 + 20 * (k / 2));
@@ -116,24 +104,10 @@ pub fn grid(path: &Path, title: &str, columns: usize, mut panels: Vec<Panel>, no
             below.draw(&(EmptyElement::at((x + 14, y)) + mark(row)))?;
             below.draw(&Text::new(row.label(), (x + 36, y - 6), ("sans-serif", 14)))?;
         }
-        Ok(())
-    });
-}
-
-/// Draws a bar of instructions for each row, those in the support functions pale, with its sum and its wrong answers.
-pub fn bars(path: &Path, title: &str, rows: &[Row], notes: &[String]) {
-    let most = rows.iter().map(Row::instructions).fold(1.0, f64::max);
-    write(path, title, 26 * rows.len() as u32 + 8, notes, |area| {
-        for (row, y) in rows.iter().zip((4..).step_by(26)) {
-            let colour = if row.ours { RGBColor(37, 99, 235) } else { RGBColor(107, 114, 128) };
-            let [start, pale, end] = [0.0, row.callbacks.unwrap_or_default(), row.instructions()]
-                .map(|instructions| 300 + (430.0 * instructions / most) as i32);
-            area.draw(&Rectangle::new([(start, y), (pale, y + 18)], colour.mix(0.45).filled()))?;
-            area.draw(&Rectangle::new([(pale, y), (end, y + 18)], colour.filled()))?;
-            area.draw(&Text::new(row.method.clone(), (16, y + 2), ("sans-serif", 14)))?;
-            let note = format!("{:.0}, {:.1} % wrong", row.instructions(), row.wrong);
-            area.draw(&Text::new(note, (end + 8, y + 2), ("sans-serif", 14)))?;
+        for (note, y) in notes.iter().zip((under..).step_by(20)) {
+            below.draw(&Text::new(note.clone(), (16, y), ("sans-serif", 12)))?;
         }
-        Ok(())
-    });
+        Ok(root.present()?)
+    };
+    make().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
 }

@@ -91,8 +91,6 @@ pub fn redraw(options: &Options) {
         let (machine, rows) = csv::read(&options.out.join(name).with_extension("csv"));
         (Page { out: options.out.clone(), machine }, rows)
     };
-    let (page, engines) = read("engines");
-    engines::draw(&page, &engines);
     let (page, vertices) = read("vertices");
     paper::draw(&page, &vertices);
     let (page, rows) = read("accuracy");
