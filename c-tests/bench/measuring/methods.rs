@@ -209,7 +209,7 @@ pub fn depth_call(f: Depth, has_pos: bool) -> Call {
 }
 
 /// Finds the call of a row of the table.
-pub fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
+fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
     type YesNo = unsafe extern "C-unwind" fn(Object, Object, Ccd) -> c_int;
     type YesNoWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm) -> c_int;
     type DepthWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, *mut f64, Point, Point) -> c_int;

@@ -13,13 +13,13 @@
 //!
 //! Departure: cones are clipped with the planes n·(b' − b) ≥ 0, not projected to a plane.
 
-use std::ffi::c_void;
+use std::cell::Cell;
 
-use ccd::internals::ffi::{ccd_t, ccd_vec3_t};
+use ccd::{Settings, Shape, Want, Warm};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::measuring::libraries::Libraries;
-use crate::measuring::methods::{Answer, Entry, Method, Start, find_call, run_call};
+use crate::measuring::methods::{Answer, Method, Start};
 use crate::measuring::scene::{Pair, Scene};
 
 type V = Vector3<f64>;
@@ -164,55 +164,43 @@ struct Climber<'a> {
     of: &'a Polytope,
     rotation: Matrix3<f64>,
     position: V,
-    last: usize,
+    last: Cell<usize>,
 }
 
-/// `ccd_support_fn` of a `Climber`.
-unsafe extern "C-unwind" fn climb(object: *const c_void, dir: *const ccd_vec3_t, out: *mut ccd_vec3_t) {
-    // SAFETY: queries pass on the pointers that they are given, and nothing else refers to the climber.
-    let (climber, dir, out) = unsafe { (&mut *object.cast_mut().cast::<Climber>(), &*dir, &mut *out) };
-    let local = climber.rotation.transpose() * V::from(dir.v);
-    climber.last = climber.of.extremal(&local, climber.last);
-    let at = climber.rotation * climber.of.corners[climber.last].at + climber.position;
-    *out = ccd_vec3_t { v: at.into() };
-}
+impl Shape for Climber<'_> {
+    fn support(&self, dir: [f64; 3]) -> [f64; 3] {
+        let last = self.of.extremal(&(self.rotation.transpose() * V::from(dir)), self.last.get());
+        self.last.set(last);
+        (self.rotation * self.of.corners[last].at + self.position).into()
+    }
 
-/// `ccd_center_fn` of a `Climber`.
-unsafe extern "C-unwind" fn middle(object: *const c_void, out: *mut ccd_vec3_t) {
-    // SAFETY: as above.
-    unsafe { (*out).v = (*object.cast::<Climber>()).position.into() };
+    fn center(&self) -> Option<[f64; 3]> {
+        Some(self.position.into())
+    }
 }
 
 /// Returns DEEP from a guess, and the local query over support functions that climb over the same edges: both on meshes,
 /// so the support points of neither are counted.
 pub fn methods<'a>(libraries: &'a Libraries, [a, b]: &'a [Polytope; 2], start: Start) -> Vec<Method<'a>> {
     let pose = |pair: &Pair| [pair.a, pair.b].map(|shape| libraries.pose(shape));
+    let guess = move |pair: &Pair| start.guess(&pair.truth).unwrap_or(pair.truth.cold);
     let mut hub = (0, 0);
     let deep = move |pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
-        let turn = ra.transpose() * rb;
-        let shift = ra.transpose() * (pb - pa);
-        let from = ra.transpose() * V::from(start.guess(&pair.truth).unwrap_or(pair.truth.cold));
-        let (depth, n) = penetration(&Placed(a, b, turn, shift), from, &mut hub)?;
+        let placed = Placed(a, b, ra.transpose() * rb, ra.transpose() * (pb - pa));
+        let (depth, n) = penetration(&placed, ra.transpose() * V::from(guess(pair)), &mut hub)?;
         Some(Answer { depth, dir: (ra * n).into() })
     };
-    let settings = ccd_t {
-        support1: Some(climb),
-        support2: Some(climb),
-        center1: Some(middle),
-        center2: Some(middle),
-        ..libraries.settings(true, 1e-6)
-    };
-    let call = find_call(libraries, Entry::find("ccdPenetrationLocal"));
-    let mut query = run_call(libraries, call, start, settings);
-    let mut last = (0, 0);
+    let settings = Settings { want: Want { pos: false, points: true }, ..Settings::new(1e-6) };
+    let mut last = [0, 0];
     let local = move |pair: &Pair| {
         let [(ra, pa), (rb, pb)] = pose(pair);
-        let mut one = Climber { of: a, rotation: ra, position: pa, last: last.0 };
-        let mut two = Climber { of: b, rotation: rb, position: pb, last: last.1 };
-        let answer = query(&Pair { a: (&raw mut one).cast(), b: (&raw mut two).cast(), ..*pair });
-        last = (one.last, two.last);
-        answer
+        let one = Climber { of: a, rotation: ra, position: pa, last: last[0].into() };
+        let two = Climber { of: b, rotation: rb, position: pb, last: last[1].into() };
+        let bodies: [&dyn Shape; 2] = [&one, &two];
+        let hit = ccd::penetration_local(bodies[0], bodies[1], &settings, Some(&mut Warm::guess(guess(pair))));
+        last = [one.last.get(), two.last.get()];
+        hit.ok()?.map(|hit| Answer { depth: hit.depth, dir: hit.dir })
     };
     vec![
         Method::new("DEEP", start, None, Box::new(deep)),
