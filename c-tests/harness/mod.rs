@@ -16,7 +16,7 @@
 //! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
 //! | `link_system` | the system's; `.swapped()` gives the same program on this library |
 //!
-//! The environment names the compilers and their flags: `CC`, `CXX`, `CFLAGS`, `CXXFLAGS`, and other tools: `NM`, `OBJCOPY`.
+//! The `cc` crate finds the compilers and reads `CC`, `CXX`, `CFLAGS`, `CXXFLAGS`; `NM` and `OBJCOPY` name other tools.
 //! All programs but those marked `without_tools` are compiled and linked with `C_TESTS_FLAGS` (`-fsanitize=address`) and run
 //! by `C_TESTS_RUNNER` (`valgrind --error-exitcode=99`). Programs for another platform are run by
 //! `CARGO_TARGET_<its name>_RUNNER` (`qemu-aarch64`), as the test itself.
@@ -150,33 +150,33 @@ fn words(variable: &str) -> Vec<String> {
     std::env::var(variable).unwrap_or_default().split_whitespace().map(String::from).collect()
 }
 
-/// Returns a tool's command, which a variable may give; panics later where neither is installed.
-pub fn tool(variable: &str, otherwise: &str) -> Command {
-    let given = words(variable);
-    let mut command = Command::new(given.first().map_or(otherwise, |name| name));
+/// Returns the command of a tool for object files, which the variable of its name in capitals may give.
+pub fn binutils(name: &str) -> Command {
+    let given = words(&name.to_uppercase());
+    let mut command = Command::new(given.first().map_or(name, |name| name));
     command.args(given.iter().skip(1));
     command
 }
 
-/// Returns the command of a tool for object files.
-pub fn binutils(name: &str) -> Command {
-    tool(&name.to_uppercase(), name)
+/// Returns the C or C++ compiler that the `cc` crate finds, with the flags of all programs.
+pub fn compiler_builder(cpp: bool) -> cc::Build {
+    let mut build = cc::Build::new();
+    build.cpp(cpp).target(TARGET).host(env!("HOST")).out_dir(output_dir()).cargo_metadata(false);
+    build.opt_level(2).warnings(true).extra_warnings(true);
+    // It takes a third of the compile time of C++.
+    build.debug(!cpp || under_tool());
+    // One rounding per operation gives the same bits on every machine.
+    build.flag("-ffp-contract=off");
+    if cfg!(target_arch = "x86") {
+        build.flag("-msse2").flag("-mfpmath=sse");
+    }
+    build
 }
 
-/// Returns the command of the C or C++ compiler with the flags of all programs.
+/// Returns the command of the compiler; panics where there is none.
 pub fn compiler(cpp: bool) -> Command {
-    let mut command = if cpp { tool("CXX", "c++") } else { tool("CC", "cc") };
-    // One rounding per operation gives the same bits on every machine.
-    command.args(["-O2", "-Wall", "-Wextra", "-ffp-contract=off"]);
-    if cfg!(target_arch = "x86") {
-        command.args(["-msse2", "-mfpmath=sse"]);
-    }
-    // It takes a third of the compile time of C++.
-    if !cpp || under_tool() {
-        command.arg("-g");
-    }
-    command.args(words(if cpp { "CXXFLAGS" } else { "CFLAGS" }));
-    command
+    let found = compiler_builder(cpp).try_get_compiler();
+    found.unwrap_or_else(|e| panic!("{e}: run `sh c-tests/setup.sh` first")).to_command()
 }
 
 /// Returns whether `command --version` succeeds.

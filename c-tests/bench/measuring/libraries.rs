@@ -169,15 +169,12 @@ impl Libraries {
 /// Compiles a source file of `c-tests` to a shared object: fast code, and on x86-64 that of every machine of the last ten years.
 /// Returns the compiler and its usual flags.
 fn compile(cpp: bool, flags: &[String], source: &str, object: &Path, linked: &[String]) -> Result<String, String> {
-    let mut compile = if cpp { harness::tool("CXX", "c++") } else { harness::tool("CC", "cc") };
-    compile.args("-O3 -ffunction-sections -fdata-sections -fPIC".split(' '));
+    let mut compiler = harness::compiler_builder(cpp);
+    compiler.opt_level(3).debug(false).pic(true);
     if cfg!(target_arch = "x86_64") {
-        compile.args(["-m64", "-march=x86-64"]);
+        compiler.flag("-march=x86-64-v2");
     }
-    compile.args(["-Wall", "-Wextra", "-ffp-contract=off"]);
-    if cfg!(target_arch = "x86_64") {
-        compile.arg("-march=x86-64-v2");
-    }
+    let mut compile = compiler.try_get_compiler().map_err(|e| e.to_string())?.to_command();
     let tool = compile.get_program().to_owned();
     let own = compile.get_args().map(|arg| arg.to_string_lossy());
     let shown = own.collect::<Vec<_>>().join(" ");

@@ -146,9 +146,9 @@ fn soname_is_that_of_libccd() {
 #[test]
 fn data_is_linked_by_copy_relocations() {
     let mut texts = BTreeSet::new();
-    let version = harness::must_succeed(harness::compiler(false).arg("--version"), "the compiler").stdout;
     // clang accesses data of a library through the global offset table by default.
-    let direct = version.contains("clang").then_some("-fdirect-access-external-data");
+    let direct =
+        harness::compiler_builder(false).get_compiler().is_like_clang().then_some("-fdirect-access-external-data");
     for flags in [["-fPIE", "-pie"], ["-fno-pie", "-no-pie"]] {
         let build = |program| flags.into_iter().chain(direct).fold(program, Program::flag).build();
         let mut programs = vec![build(program("objects").link_ours_shared())];
