@@ -145,7 +145,7 @@ fn integrate<A: SupportMap, B: SupportMap>(
     if !query.build_fan(smaller, &mut fan)? {
         return Ok(false);
     }
-    if is_plane(&query.known_extremes(other), &fan, query.vertex_offset) {
+    if is_plane(&query.extremes(other), &fan, query.vertex_offset) {
         if !fan.is_symmetric {
             sum.add_fan_on_plane(&fan);
         }
@@ -385,8 +385,7 @@ mod tests {
         for &(x, y, drop) in corners {
             fan.push(Vec3::new(x, y, drop));
         }
-        fan.close();
-        assert!(fan.contains_deepest_point());
+        assert!(fan.close(0.0)[1]);
         fan
     }
 

@@ -8,13 +8,13 @@
 //! evaluated too. Of a disc the points between them on its rim are computed.
 
 use crate::contact::fan::{Fan, moved};
-use crate::contact::feature::{FeatureQuery, ObjectVertices, four_directions};
+use crate::contact::feature::{FeatureQuery, four_directions, is_within};
 use crate::contact::tuning::{
-    IN_PLANE_DROP_TOL, MAX_CURVED_ASIDE, MAX_CURVED_DROP, MAX_TILT_TAN, MIN_CURVED_DROP,
-    MIN_CURVED_KNOWN, RIM_REL_TOL, SAME_DROP_TOL, SYMMETRY_REL_TOL,
+    COMMON_DROP_FACTOR, IN_PLANE_DROP_TOL, MAX_CURVED_ASIDE, MAX_CURVED_DROP, MAX_TILT_TAN,
+    MIN_CURVED_DROP, MIN_CURVED_KNOWN, RIM_REL_TOL, SAME_DROP_TOL, SYMMETRY_REL_TOL,
 };
 use crate::geometry::polygon::{Vec2, offset};
-use crate::math::Vec3;
+use crate::math::{Vec3, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 
 /// The coordinate of a diagonal unit vector.
@@ -29,10 +29,14 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     #[inline(never)]
     pub fn find_curved(
         &self,
-        evaluated: &mut ObjectVertices,
+        object: usize,
+        extremes: &mut [Vec3; 4],
         fan: &mut Fan,
     ) -> Result<bool, Fault> {
-        let center = self.centers[evaluated.object % 2];
+        let center = match self.has_centers {
+            true => self.centers[object % 2],
+            false => extremes.iter().sum::<Vec3>().xy(),
+        };
         let distance = center.norm();
         let has_axis = distance > self.same_distance();
         let axis = if has_axis {
@@ -41,9 +45,10 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             Vec2::x()
         };
         let out = four_directions(Vec2::new(axis.x - axis.y, axis.x + axis.y) * H);
-        let a = self.query(evaluated, out[0])?;
-        let c = self.query(evaluated, out[2])?;
-        if evaluated.has_repeated(2, self.same_distance()) {
+        let a = self.query(object, out[0])?;
+        let c = self.query(object, out[2])?;
+        if self.is_known(object, extremes, [&a, &c]) {
+            [a, c].iter().for_each(|v| self.raise_extremes(extremes, v));
             return Ok(false);
         }
         let tolerance = SYMMETRY_REL_TOL * self.extent;
@@ -69,28 +74,53 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             && is_round(&a, aside_a)
             && is_round(&c, aside_c)
             && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c
-            && self.is_below_known_planes(evaluated.object, [&b, &d], tolerance);
+            && self.is_below_known_planes(object, [&b, &d], tolerance);
         let mut between = None;
         if !is_mirrored {
-            b = self.query(evaluated, out[1])?;
-            d = self.query(evaluated, out[3])?;
+            b = self.query(object, out[1])?;
+            d = self.query(object, out[3])?;
             between = self.fit_disc_rim([&a, &b, &c, &d], &out);
             let normal = (b - a).cross(&(c - a));
             let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
             let is_face = between.is_none() && drop_at_deepest < IN_PLANE_DROP_TOL;
-            if is_face || evaluated.has_repeated(2, self.same_distance()) {
+            let is_corner = [&b, &d].iter().any(|v| {
+                let same = self.same_distance();
+                is_within(v, &a, same) || is_within(v, &c, same)
+            });
+            if is_face || is_corner || self.is_known(object, extremes, [&b, &d]) {
+                let found = [a, b, c, d];
+                found.iter().for_each(|v| self.raise_extremes(extremes, v));
                 return Ok(false);
             }
         }
+        let points = [a, b, c, d]
+            .into_iter()
+            .chain(between.into_iter().flatten());
+        let common = COMMON_DROP_FACTOR * points.fold(1.0, |least, v| lesser(v.z, least));
         fan.len = 0;
         for (k, v) in [a, b, c, d].iter().enumerate() {
-            fan.push(moved(v, out[k], self.vertex_offset));
+            fan.push(moved(v, out[k], self.vertex_offset, common));
             if let Some(between) = &between {
                 let out = (out[k] + out[(k + 1) % 4]) * H;
-                fan.push(moved(&between[k], out, self.vertex_offset));
+                fan.push(moved(&between[k], out, self.vertex_offset, common));
             }
         }
         Ok(true)
+    }
+
+    /// Returns whether a search returned one of two vertices before.
+    #[inline(always)]
+    fn is_known(&self, object: usize, extremes: &[Vec3; 4], queried: [&Vec3; 2]) -> bool {
+        let same = self.same_distance();
+        let is_one = |v: &Vec3| is_within(v, queried[0], same) | is_within(v, queried[1], same);
+        let mut is_known = false;
+        for pair in self.known {
+            is_known |= is_one(&pair.vertex(object));
+        }
+        for v in extremes {
+            is_known |= is_one(v);
+        }
+        is_known
     }
 
     /// Returns whether two points of an object are at most `tolerance` beyond its known support planes. Measured: without

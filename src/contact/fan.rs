@@ -6,7 +6,7 @@
 use crate::contact::polygon_search::MAX_CORNERS;
 use crate::contact::tuning::SAME_DROP_TOL;
 use crate::geometry::polygon::Vec2;
-use crate::math::{Vec3, ZERO};
+use crate::math::{Vec3, ZERO, larger};
 
 /// Returns twice the area of the triangle of the deepest point and two vertices, positive if counterclockwise.
 #[inline(always)]
@@ -14,10 +14,10 @@ pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Returns a vertex moved along unit `out`.
+/// Returns a vertex moved along unit `out` and raised by a drop.
 #[inline(always)]
-pub fn moved(v: &Vec3, out: Vec2, distance: f64) -> Vec3 {
-    Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z)
+pub fn moved(v: &Vec3, out: Vec2, distance: f64, raised: f64) -> Vec3 {
+    Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z - raised)
 }
 
 /// The vertices of a feature, counterclockwise around the deepest point.
@@ -50,10 +50,23 @@ impl Fan {
         }
     }
 
-    /// Repeats the first vertex.
+    /// Repeats the first vertex. Returns whether the outline is farther than `size` from the deepest point anywhere, and
+    /// whether the vertices are once around that, counterclockwise.
     #[inline(always)]
-    pub fn close(&mut self) {
-        self.vertices[self.len.min(Self::CAPACITY - 1)] = self.vertices[0];
+    pub fn close(&mut self, size: f64) -> [bool; 2] {
+        let n = self.len.min(Self::CAPACITY - 1);
+        self.vertices[n] = self.vertices[0];
+        let mut turns = 0;
+        let (mut is_inside, mut is_point) = (true, true);
+        let mut p = self.vertices[0];
+        for q in self.vertices.iter().skip(1).take(n) {
+            is_inside &= area2(&p, q) > 0.0;
+            turns += usize::from(p.y < 0.0) & usize::from(q.y >= 0.0);
+            let limit = size * larger(q.z, 1.0);
+            is_point &= q.xy().norm_squared() <= limit * limit;
+            p = *q;
+        }
+        [!is_point, is_inside && turns == 1]
     }
 
     /// Returns twice the area of the triangle of the deepest point, vertex `i` and the next one.
@@ -61,18 +74,6 @@ impl Fan {
     pub fn area(&self, i: usize) -> f64 {
         let i = i.min(Self::CAPACITY - 2);
         area2(&self.vertices[i], &self.vertices[i + 1])
-    }
-
-    /// Returns whether the vertices are once around the deepest point, counterclockwise.
-    #[inline(always)]
-    pub fn contains_deepest_point(&self) -> bool {
-        let mut turns = 0;
-        let mut is_inside = true;
-        for i in 0..self.len.min(Self::CAPACITY - 1) {
-            is_inside &= self.area(i) > 0.0;
-            turns += usize::from(self.vertices[i].y < 0.0 && self.vertices[i + 1].y >= 0.0);
-        }
-        is_inside && turns == 1
     }
 
     /// Orders the vertices around the deepest point and, if it is outside, adds a vertex at `distance` behind it. Returns
@@ -100,7 +101,7 @@ impl Fan {
             }
         }
         self.len = n;
-        self.close();
+        self.vertices[n] = self.vertices[0];
         let is_gap = |i: &usize| {
             let [p, q] = self.side(*i);
             let area = area2(p, q);
@@ -116,7 +117,7 @@ impl Fan {
             let places = self.vertices.iter_mut().skip(gap + 1);
             places.for_each(|place| core::mem::swap(place, &mut behind));
             self.len = n + 1;
-            self.close();
+            self.vertices[n + 1] = self.vertices[0];
         }
         let mut i = 0;
         while i < self.len && self.len > 2 {
@@ -127,7 +128,7 @@ impl Fan {
                     }
                 }
                 self.len -= 1;
-                self.close();
+                self.vertices[self.len.min(Self::CAPACITY - 1)] = self.vertices[0];
                 i = 0;
             } else {
                 i += 1;
@@ -190,14 +191,13 @@ mod tests {
                 let (x, y) = (x * cos - y * sin, x * sin + y * cos);
                 fan.push(Vec3::new(x, y, 0.0));
             }
-            fan.close();
-            assert!(!fan.contains_deepest_point());
+            assert!(!fan.close(0.0)[1]);
             assert!(fan.enclose_deepest_point(1e-3));
-            assert!(fan.contains_deepest_point(), "{round} {fan:?}");
+            assert!(fan.close(0.0)[1], "{round} {fan:?}");
         }
         let mut point = Fan::EMPTY;
         point.push(Vec3::x());
-        point.close();
+        point.close(0.0);
         assert!(!point.enclose_deepest_point(1e-3));
     }
 }

@@ -23,11 +23,10 @@
 use crate::contact::fan::Fan;
 use crate::contact::frame::ContactFrame;
 use crate::contact::tuning::{
-    COMMON_DROP_FACTOR, MAX_TILT_TAN, MIN_COSINE, MIN_TURN_REL, POINT_REL, SAME_REL, TILT_FACTOR,
-    VERTEX_OFFSET_REL,
+    MAX_TILT_TAN, MIN_COSINE, MIN_TURN_REL, POINT_REL, SAME_REL, TILT_FACTOR, VERTEX_OFFSET_REL,
 };
 use crate::geometry::polygon::Vec2;
-use crate::math::{EPSILON, Vec3, ZERO, larger, lesser};
+use crate::math::{EPSILON, Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::vertex_set::VertexSet;
 
@@ -37,7 +36,7 @@ pub const MAX_KNOWN: usize = 16;
 /// Returns whether the distance of two vertices along each axis is at most `distance`.
 #[inline(always)]
 pub fn is_within(a: &Vec3, b: &Vec3, distance: f64) -> bool {
-    (a.x - b.x).abs() <= distance && (a.y - b.y).abs() <= distance
+    larger((a.x - b.x).abs(), (a.y - b.y).abs()) <= distance
 }
 
 /// Returns unit `out` and the directions at right angles to it, counterclockwise.
@@ -80,9 +79,9 @@ pub struct FeatureQuery<'q, A, B> {
     md: &'q MinkowskiDifference<A, B>,
     pub frame: ContactFrame,
     pub known: &'q [KnownPair],
-    /// Whether different directions returned the same vertex of an object.
-    is_polytope: [bool; 2],
-    /// x and y of the center of each object; without centers, the mean of the known vertices.
+    /// What the known vertices tell of each object.
+    evidence: Evidence,
+    /// x and y of the center of each object; 0 without centers.
     pub centers: [Vec2; 2],
     pub has_centers: bool,
     /// The object of smaller extent, as far as its vertices are known, 0 or 1.
@@ -133,7 +132,6 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         };
         let first_known = set.len().saturating_sub(MAX_KNOWN);
         let mut len = 0;
-        let mut sum = KnownPair::ZERO;
         for (coords, dir) in set.coords_from(first_known).zip(set.dirs_from(first_known)) {
             let pair = project(coords);
             // A point that no call returned has no direction.
@@ -142,25 +140,28 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
                 let tilt = [e1.dot(dir) / cosine, e2.dot(dir) / cosine];
                 known[len % MAX_KNOWN] = KnownPair { tilt, ..pair };
                 len += 1;
-                for k in 0..2 {
-                    sum.x[k] += pair.x[k];
-                    sum.y[k] += pair.y[k];
-                }
             }
         }
         let center = match &centers {
             Some([c1, c2]) => project([[c1.x, -c2.x], [c1.y, -c2.y], [c1.z, -c2.z]]),
-            None => sum,
+            None => KnownPair::ZERO,
         };
         let smaller = usize::from(far2[1] < far2[0]);
         let extent = far2[smaller].sqrt();
         let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
+        let depth_over_tilt = depth / tilt;
         let known = known.get(..len).unwrap_or(&[]);
+        let evidence = Evidence::new(
+            known,
+            depth_over_tilt,
+            SAME_REL * extent,
+            MIN_TURN_REL * tilt,
+        );
         Self {
             md,
             frame,
             known,
-            is_polytope: have_repeated_vertex(known, SAME_REL * extent, MIN_TURN_REL * tilt),
+            evidence,
             centers: [0, 1].map(|k| Vec2::new(center.x[k], center.y[k])),
             has_centers: centers.is_some(),
             smaller,
@@ -169,26 +170,30 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             half_gap,
             tilt,
             cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
-            depth_over_tilt: depth / tilt,
+            depth_over_tilt,
             vertex_offset: larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent),
         }
     }
 
-    /// Returns the known vertices of an object.
+    /// Returns the known vertices of an object with the greatest height along e1, e2, -e1 and -e2; the deepest point if
+    /// none is known.
     #[inline(always)]
-    fn known_of(&self, object: usize) -> ObjectVertices<'q> {
-        ObjectVertices {
-            known: self.known,
-            object,
-            queried: [ZERO; ObjectVertices::MAX_QUERIED],
-            len: 0,
-        }
+    pub fn extremes(&self, object: usize) -> [Vec3; 4] {
+        self.evidence.farthest.map(|indices| {
+            let pair = self.known.get(indices[object % 2]);
+            pair.unwrap_or(&KnownPair::ZERO).vertex(object)
+        })
     }
 
-    /// Returns the known vertices of an object with the greatest height along ±e1 and ±e2.
-    #[inline(always)]
-    pub fn known_extremes(&self, object: usize) -> [Vec3; 4] {
-        self.known_of(object).extremes(self.depth_over_tilt)
+    /// Puts a queried vertex in the place of lower ones of [`FeatureQuery::extremes`].
+    #[cold]
+    #[inline(never)]
+    pub fn raise_extremes(&self, extremes: &mut [Vec3; 4], v: &Vec3) {
+        for (extreme, out) in extremes.iter_mut().zip(four_directions(Vec2::x())) {
+            if self.height(v, &out) > self.height(extreme, &out) {
+                *extreme = *v;
+            }
+        }
     }
 
     /// Evaluates an object along n + T `out`.
@@ -196,19 +201,14 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
-    pub fn query(&self, evaluated: &mut ObjectVertices, out: Vec2) -> Result<Vec3, Fault> {
+    pub fn query(&self, object: usize, out: Vec2) -> Result<Vec3, Fault> {
         let [e1, e2] = &self.frame.axes;
         let aside = (e1 * out.x + e2 * out.y) * (self.tilt * self.cosine);
         let dir = self.frame.normal * self.cosine + aside;
-        let p = self.md.support_of_object(evaluated.object, &dir);
-        let p = self.frame.project(&p)? * if evaluated.object == 0 { 1.0 } else { -1.0 };
-        let v = Vec3::new(
-            p.x,
-            p.y,
-            larger((self.half_gap - p.z) * self.per_depth, 0.0),
-        );
-        evaluated.push(v);
-        Ok(v)
+        let p = self.md.support_of_object(object, &dir);
+        let p = self.frame.project(&p)? * if object == 0 { 1.0 } else { -1.0 };
+        let drop = larger((self.half_gap - p.z) * self.per_depth, 0.0);
+        Ok(Vec3::new(p.x, p.y, drop))
     }
 
     /// Returns the height of a vertex along n + T `out`, divided by T.
@@ -230,129 +230,59 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     /// [`Fault::NonFinite`].
     #[inline(never)]
     pub fn build_fan(&self, object: usize, fan: &mut Fan) -> Result<bool, Fault> {
-        let mut evaluated = self.known_of(object);
-        let is_polytope = self.is_polytope[object % 2];
-        if !(is_polytope && self.find_polygon(&mut evaluated, true, fan)?
-            || self.find_curved(&mut evaluated, fan)?)
+        let is_polytope = self.evidence.is_polytope[object % 2];
+        let mut extremes = self.extremes(object);
+        if !(is_polytope && self.find_polygon(object, &mut extremes, true, fan)?
+            || self.find_curved(object, &mut extremes, fan)?)
         {
-            self.find_polygon(&mut evaluated, false, fan)?;
+            self.find_polygon(object, &mut extremes, false, fan)?;
         }
-        let (mut least, mut is_point) = (1.0, true);
-        let size2 = POINT_REL * POINT_REL * self.extent * self.extent;
-        for v in fan.vertices.iter().take(fan.len) {
-            let drop = larger(v.z, 1.0);
-            is_point &= v.xy().norm_squared() <= size2 * drop * drop;
-            least = lesser(v.z, least);
-        }
-        if is_point {
-            return Ok(false);
-        }
-        for v in fan.vertices.iter_mut().take(fan.len) {
-            v.z -= COMMON_DROP_FACTOR * least;
-        }
-        fan.close();
-        Ok(fan.contains_deepest_point() || fan.enclose_deepest_point(self.vertex_offset))
+        let [has_size, is_around] = fan.close(POINT_REL * self.extent);
+        Ok(has_size && (is_around || fan.enclose_deepest_point(self.vertex_offset)))
     }
 }
 
-/// Returns for both objects whether different directions returned the same vertex.
-#[inline(always)]
-fn have_repeated_vertex(known: &[KnownPair], same: f64, turned: f64) -> [bool; 2] {
-    let mut repeated = [0_u64; 2];
-    for (i, v) in known.iter().enumerate() {
-        for w in known.iter().take(i) {
-            let turn = larger((v.tilt[0] - w.tilt[0]).abs(), (v.tilt[1] - w.tilt[1]).abs());
-            let limit = if turn > turned { same } else { -1.0 };
-            for (k, repeated) in repeated.iter_mut().enumerate() {
-                let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
-                *repeated |= u64::from(distance <= limit) & u64::from(v.drop[k] <= 1.0);
-            }
-        }
-    }
-    repeated.map(|n| n > 0)
+/// What the known vertices tell of both objects.
+struct Evidence {
+    /// The indices of the vertices of greatest height along e1, e2, -e1 and -e2.
+    farthest: [[usize; 2]; 4],
+    /// Whether different directions returned the same vertex, of which an object is taken for a polytope.
+    is_polytope: [bool; 2],
 }
 
-/// The evaluated vertices of one object: known ones and those queried for its feature.
-pub struct ObjectVertices<'q> {
-    pub known: &'q [KnownPair],
-    pub object: usize,
-    queried: [Vec3; ObjectVertices::MAX_QUERIED],
-    len: usize,
-}
-
-impl ObjectVertices<'_> {
-    /// Number of queried vertices that are kept; later ones are queried again if needed.
-    const MAX_QUERIED: usize = 8;
-
-    /// Appends a queried vertex.
+impl Evidence {
+    /// Compares the known vertices. `same`: the distance below which two are the same, metres. `turned`: the least
+    /// difference of tilts of different directions.
     #[inline(always)]
-    fn push(&mut self, v: Vec3) {
-        if let Some(end) = self.queried.get_mut(self.len) {
-            *end = v;
-            self.len += 1;
-        }
-    }
-
-    /// Returns the queried vertices.
-    #[inline(always)]
-    fn queried(&self) -> &[Vec3] {
-        self.queried.get(..self.len).unwrap_or(&[])
-    }
-
-    /// Returns the vertices of greatest height along ±e1 and ±e2; the deepest point if none is known.
-    #[inline(always)]
-    pub fn extremes(&self, depth_over_tilt: f64) -> [Vec3; 4] {
+    fn new(known: &[KnownPair], depth_over_tilt: f64, same: f64, turned: f64) -> Self {
         // The index of a vertex is in the low bits of its height, so that the maximum carries it.
-        const MASK: u64 = (MAX_KNOWN + ObjectVertices::MAX_QUERIED).next_power_of_two() as u64 - 1;
-        let mut best = [f64::NEG_INFINITY; 4];
-        let mut compare = |i: usize, v: &Vec3| {
-            let fall = v.z * depth_over_tilt;
-            let heights = [v.x - fall, v.y - fall, -v.x - fall, -v.y - fall];
-            for j in 0..4 {
-                let height = f64::from_bits(heights[j].to_bits() & !MASK | i as u64);
-                best[j] = larger(height, best[j]);
+        const MASK: u64 = MAX_KNOWN as u64 - 1;
+        let mut best = [[f64::NEG_INFINITY; 2]; 4];
+        let mut repeated = [0_u64; 2];
+        for (i, v) in known.iter().enumerate() {
+            for k in 0..2 {
+                let fall = v.drop[k] * depth_over_tilt;
+                let (x, y) = (v.x[k], v.y[k]);
+                for (best, height) in
+                    best.iter_mut()
+                        .zip([x - fall, y - fall, -x - fall, -y - fall])
+                {
+                    let height = f64::from_bits(height.to_bits() & !MASK | i as u64);
+                    best[k] = larger(height, best[k]);
+                }
             }
-        };
-        for (i, pair) in self.known.iter().enumerate() {
-            compare(i, &pair.vertex(self.object));
-        }
-        for (i, v) in self.queried().iter().enumerate() {
-            compare(MAX_KNOWN + i, v);
-        }
-        best.map(|height| {
-            let i = (height.to_bits() & MASK) as usize;
-            match self.known.get(i) {
-                Some(pair) => pair.vertex(self.object),
-                None => *self.queried.get(i.wrapping_sub(MAX_KNOWN)).unwrap_or(&ZERO),
+            for w in known.iter().take(i) {
+                let turn = larger((v.tilt[0] - w.tilt[0]).abs(), (v.tilt[1] - w.tilt[1]).abs());
+                let limit = if turn > turned { same } else { -1.0 };
+                for (k, repeated) in repeated.iter_mut().enumerate() {
+                    let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
+                    *repeated |= u64::from(distance <= limit) & u64::from(v.drop[k] <= 1.0);
+                }
             }
-        })
-    }
-
-    /// Returns the vertex of greatest height along `out`, if that is more than `least`.
-    #[inline(always)]
-    pub fn highest(&self, out: Vec2, depth_over_tilt: f64, least: f64) -> Option<Vec3> {
-        let (mut highest, mut found) = (least, None);
-        let mut compare = |v: Vec3| {
-            let height = out.dot(&v.xy()) - v.z * depth_over_tilt;
-            if height > highest {
-                (highest, found) = (height, Some(v));
-            }
-        };
-        for pair in self.known {
-            compare(pair.vertex(self.object));
         }
-        self.queried().iter().for_each(|v| compare(*v));
-        found
-    }
-
-    /// Returns whether one of the newest `count` vertices was known before.
-    #[inline(always)]
-    pub fn has_repeated(&self, count: usize, same: f64) -> bool {
-        let end = self.len.saturating_sub(count);
-        let old = self.queried.get(..end).unwrap_or(&[]);
-        let new = self.queried.get(end..self.len).unwrap_or(&[]);
-        let is_new = |v: &Vec3| new.iter().any(|w| is_within(v, w, same));
-        let mut known = self.known.iter();
-        old.iter().any(is_new) || known.any(|pair| is_new(&pair.vertex(self.object)))
+        Self {
+            farthest: best.map(|best| best.map(|height| (height.to_bits() & MASK) as usize)),
+            is_polytope: repeated.map(|n| n > 0),
+        }
     }
 }

@@ -9,8 +9,10 @@
 //! other. A corner and an edge are known if evaluated directions around them returned them.
 
 use crate::contact::fan::{Fan, moved};
-use crate::contact::feature::{FeatureQuery, ObjectVertices, four_directions, is_within};
-use crate::contact::tuning::{MIN_COVER, POINT_REL, SAME_DROP_TOL, SYMMETRY_REL_TOL};
+use crate::contact::feature::{FeatureQuery, KnownPair, four_directions, is_within};
+use crate::contact::tuning::{
+    COMMON_DROP_FACTOR, MIN_COVER, POINT_REL, SAME_DROP_TOL, SYMMETRY_REL_TOL,
+};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
@@ -29,13 +31,14 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     #[inline(never)]
     pub fn find_polygon(
         &self,
-        evaluated: &mut ObjectVertices,
+        object: usize,
+        extremes: &mut [Vec3; 4],
         may_fail: bool,
         fan: &mut Fan,
     ) -> Result<bool, Fault> {
         let same = self.same_distance();
         let mut polygon = Polygon::default();
-        for v in &evaluated.extremes(self.depth_over_tilt) {
+        for v in extremes.iter() {
             polygon.push_distinct(v, same);
         }
         let least_side = POINT_REL * self.extent;
@@ -50,18 +53,22 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             let ends = polygon.side(side);
             let [p, q] = ends.map(|end| self.height(end, &out));
             let least = larger(p, q) + 2.0 * self.vertex_offset;
-            let mut found = evaluated.highest(out, self.depth_over_tilt, least);
+            let mut found = None;
             let is_side = n > 2 || n == 2 && step < 2;
             let is_covered =
-                n < 3 && found.is_none() && self.is_covered(evaluated.object, out, ends, is_side);
-            if found.is_none() && !is_covered {
-                let v = self.query(evaluated, out)?;
+                may_fail && n < 3 && self.is_covered(object, out, ends, is_side, least);
+            if !is_covered {
+                let v = self.query(object, out)?;
                 if self.height(&v, &out) > least {
                     (found, misses) = (Some(v), misses + 1);
                 } else {
                     hits += 1;
                 }
                 if may_fail && n < 3 && hits == 0 && misses == 2 {
+                    let corners = polygon.corners.iter().take(n);
+                    corners
+                        .chain([&v])
+                        .for_each(|v| self.raise_extremes(extremes, v));
                     return Ok(false);
                 }
             }
@@ -133,21 +140,27 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         Vec2::new(along.y, -along.x) * (1.0 - lean * lean).sqrt() + along * lean
     }
 
-    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices; `is_side`: towards it
-    /// within 27°. (The directions that return a vertex form a convex set, which mostly contains the normal.)
+    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices, and no known vertex is
+    /// higher than `least`; `is_side`: towards it within 27°. (The directions that return a vertex form a convex set, which
+    /// mostly contains the normal.)
     #[inline(always)]
-    fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
+    fn is_covered(
+        &self,
+        object: usize,
+        out: Vec2,
+        ends: [&Vec3; 2],
+        is_side: bool,
+        least: f64,
+    ) -> bool {
         let same = self.same_distance();
-        self.known.iter().any(|pair| {
+        let share = if is_side { 2.0 } else { 0.0 };
+        let is_cover = |pair: &KnownPair| {
             let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
-            let aside = if is_side {
-                2.0 * tilt.perp(&out).abs()
-            } else {
-                0.0
-            };
-            tilt.dot(&out) - aside >= MIN_COVER * self.tilt
-                && ends.iter().any(|end| is_within(&v, end, same))
-        })
+            let towards = tilt.dot(&out) - share * tilt.perp(&out).abs();
+            towards >= MIN_COVER * self.tilt && ends.iter().any(|end| is_within(&v, end, same))
+        };
+        let is_below = |pair: &KnownPair| self.height(&pair.vertex(object), &out) <= least;
+        self.known.iter().any(is_cover) && self.known.iter().all(is_below)
     }
 }
 
@@ -244,12 +257,14 @@ impl Polygon {
     #[inline(always)]
     fn write_fan(&self, fan: &mut Fan, distance: f64) {
         let corners = self.corners.get(..self.len).unwrap_or(&[]);
+        let least = corners.iter().fold(1.0, |least, v| lesser(v.z, least));
+        let common = COMMON_DROP_FACTOR * least;
         fan.len = 0;
         if let [a, b] = corners {
             let along = offset(a, b);
             let out = four_directions(along * (1.0 / along.norm()));
             for (v, k) in [(a, 2), (a, 3), (b, 0), (b, 1)] {
-                fan.push(moved(v, out[k], distance));
+                fan.push(moved(v, out[k], distance, common));
             }
             return;
         }
@@ -257,7 +272,7 @@ impl Polygon {
         for v in corners {
             let out = offset(&mean, v);
             let norm2 = larger(out.norm_squared(), f64::MIN_POSITIVE);
-            fan.push(moved(v, out, distance / norm2.sqrt()));
+            fan.push(moved(v, out, distance / norm2.sqrt(), common));
         }
     }
 }
