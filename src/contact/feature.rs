@@ -33,6 +33,10 @@ use crate::minkowski::vertex_set::VertexSet;
 /// Number of most recent known vertices used. Measured: with 8 a hit takes 0.8 % fewer instructions and 0.1 % more support
 /// points, and a position of nearly parallel frusta (`judged hard`) is outside.
 pub const MAX_KNOWN: usize = 16;
+/// A vertex counts as returned twice if two of so many consecutive evaluations, and the next, returned it. Measured: with all
+/// evaluations a hit takes 4 % more of the instructions of the position and the same support points.
+const REPEAT_WINDOW: usize = 4;
+
 /// Returns whether the distance of two vertices along each axis is at most `distance`.
 #[inline(always)]
 pub fn is_within(a: &Vec3, b: &Vec3, distance: f64) -> bool {
@@ -260,6 +264,7 @@ impl Evidence {
         let mut best = [[f64::NEG_INFINITY; 2]; 4];
         let mut repeated = [0_u64; 2];
         for (i, v) in known.iter().enumerate() {
+            let in_overlap = v.drop.map(|drop| u64::from(drop <= 1.0));
             for k in 0..2 {
                 let fall = v.drop[k] * depth_over_tilt;
                 let (x, y) = (v.x[k], v.y[k]);
@@ -271,12 +276,13 @@ impl Evidence {
                     best[k] = larger(height, best[k]);
                 }
             }
-            for w in known.iter().take(i) {
+            let before = known.get(..i).unwrap_or(&[]);
+            for w in before.iter().rev().take(REPEAT_WINDOW) {
                 let turn = larger((v.tilt[0] - w.tilt[0]).abs(), (v.tilt[1] - w.tilt[1]).abs());
-                let limit = if turn > turned { same } else { -1.0 };
+                let is_other = u64::from(turn > turned);
                 for (k, repeated) in repeated.iter_mut().enumerate() {
                     let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
-                    *repeated |= u64::from(distance <= limit) & u64::from(v.drop[k] <= 1.0);
+                    *repeated |= u64::from(distance <= same) & is_other & in_overlap[k];
                 }
             }
         }

@@ -41,6 +41,9 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         for v in extremes.iter() {
             polygon.push_distinct(v, same);
         }
+        for i in 0..polygon.len {
+            polygon.open(i);
+        }
         let least_side = POINT_REL * self.extent;
         // The number of directions done around a corner or an edge, and that of queries that returned known vertices
         // and new ones.
@@ -75,7 +78,9 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             step += 1;
             match found.filter(|v| !polygon.has(v, same)) {
                 None => {
-                    polygon.is_closed[side % MAX_CORNERS] = is_side && !is_covered;
+                    if is_side && !is_covered {
+                        polygon.open_length2[side % MAX_CORNERS] = 0.0;
+                    }
                     if n == 4 && polygon.is_parallelogram(SYMMETRY_REL_TOL * self.extent) {
                         break;
                     }
@@ -83,7 +88,8 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
                 // Beyond an end of an edge.
                 Some(v) if !is_side && n == 2 => {
                     polygon.corners[usize::from(step == 3)] = v;
-                    polygon.is_closed = [false; MAX_CORNERS];
+                    polygon.open(0);
+                    polygon.open(1);
                     step = 0;
                 }
                 Some(v) => {
@@ -168,8 +174,8 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
 #[derive(Default)]
 struct Polygon {
     corners: [Vec3; MAX_CORNERS],
-    /// Whether there is no corner beyond the side from each corner to the next.
-    is_closed: [bool; MAX_CORNERS],
+    /// The square of the length of the side from each corner to the next, m²; 0 if there is no corner beyond it.
+    open_length2: [f64; MAX_CORNERS],
     len: usize,
 }
 
@@ -195,18 +201,27 @@ impl Polygon {
         [i, next].map(|i| &self.corners[i.min(MAX_CORNERS - 1)])
     }
 
-    /// Returns the longest side that is not closed and at least partly in the overlap.
+    /// Marks a side as one beyond which a corner may be.
+    #[inline(always)]
+    fn open(&mut self, i: usize) {
+        let [p, q] = self.side(i);
+        // A side below the overlap does not matter.
+        let in_overlap = f64::from(u8::from(lesser(p.z, q.z) < 1.0));
+        let length2 = offset(p, q).norm_squared() * in_overlap;
+        self.open_length2[i % MAX_CORNERS] = length2;
+    }
+
+    /// Returns the longest open side that is longer than the root of `least2`.
     #[inline(always)]
     fn longest_open_side(&self, least2: f64) -> Option<usize> {
-        let (mut longest, mut found) = (least2, None);
-        for i in 0..self.len.min(MAX_CORNERS) {
-            let [p, q] = self.side(i);
-            let length2 = offset(p, q).norm_squared();
-            if length2 > longest && !self.is_closed[i] && (p.z < 1.0 || q.z < 1.0) {
-                (longest, found) = (length2, Some(i));
-            }
+        // The index of a side is in the low bits of its length, so that the maximum carries it.
+        const MASK: u64 = MAX_CORNERS.next_power_of_two() as u64 - 1;
+        let mut longest = least2.to_bits() | MASK;
+        for (i, length2) in self.open_length2.iter().take(self.len).enumerate() {
+            longest = longest.max(length2.to_bits() & !MASK | i as u64);
         }
-        found
+        let i = (longest & MASK) as usize;
+        (i < MAX_CORNERS).then_some(i)
     }
 
     /// Returns whether a vertex is a corner.
@@ -221,12 +236,14 @@ impl Polygon {
     fn insert(&mut self, side: usize, v: &Vec3) {
         let mut i = self.len.min(MAX_CORNERS - 1);
         while i > side + 1 {
-            (self.corners[i], self.is_closed[i]) = (self.corners[i - 1], self.is_closed[i - 1]);
+            self.corners[i] = self.corners[i - 1];
+            self.open_length2[i] = self.open_length2[i - 1];
             i -= 1;
         }
-        (self.corners[i], self.is_closed[i]) = (*v, false);
-        self.is_closed[side % MAX_CORNERS] = false;
+        self.corners[i] = *v;
         self.len += 1;
+        self.open(side);
+        self.open(i);
     }
 
     /// Removes a corner.
@@ -234,15 +251,12 @@ impl Polygon {
     #[inline(never)]
     fn remove(&mut self, i: usize) {
         let removed = i % self.len.max(1);
-        for i in 1..MAX_CORNERS {
-            if i > removed {
-                self.corners[i - 1] = self.corners[i];
-                self.is_closed[i - 1] = self.is_closed[i];
-            }
+        for i in removed + 1..MAX_CORNERS {
+            self.corners[i - 1] = self.corners[i];
+            self.open_length2[i - 1] = self.open_length2[i];
         }
         self.len -= 1;
-        let last = (removed + self.len).saturating_sub(1) % self.len.max(1);
-        self.is_closed[last % MAX_CORNERS] = false;
+        self.open((removed + self.len).saturating_sub(1) % self.len.max(1));
     }
 
     /// Returns whether four corners are a parallelogram, in space too.
