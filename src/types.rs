@@ -7,7 +7,7 @@
 //! support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and `depth` is the least
 //! support value of the points that were returned. Moving obj2 by it need not separate the objects.
 
-use crate::math::Vec3;
+use crate::math::{ITERATION_CAP, Vec3};
 
 /// The tolerance and the limits of a query.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +18,14 @@ pub struct Settings {
     /// Limits the iterations that refine an answer; at most `ITERATION_CAP`. Support points that decide whether the
     /// objects overlap are not limited, except in a distance. `include/README.md` says what each query counts.
     pub max_iterations: u64,
+}
+
+impl Settings {
+    /// The settings of a query that reads none.
+    pub const UNREAD: Self = Self {
+        tolerance: f64::INFINITY,
+        max_iterations: ITERATION_CAP,
+    };
 }
 
 /// The requested results, besides depth, bounds and directions. A result that is not requested is

@@ -137,14 +137,53 @@ impl QueryArgs {
         Some(dir.into())
     }
 
-    /// Returns the pair with its centers or first direction, and without a tolerance; `None` if `ccd` or a callback that
-    /// the query requires is NULL, or a center is not finite.
+    /// Returns the caller's settings; `None` if `ccd` is NULL. If the tolerance is negative or NaN, libccd's calls use
+    /// [`DEFAULT_TOLERANCE`]; other queries return `None`.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn pair(&self, kind: QueryKind, want: Want) -> Option<Pair<Object, Object>> {
-        // SAFETY: the caller's guarantees are those of the callee.
+    pub unsafe fn settings(&self, kind: QueryKind) -> Option<Settings> {
+        if self.ccd.is_null() {
+            return None;
+        }
+        // SAFETY: [inputs]; only the fields named are read.
+        unsafe {
+            let mut tolerance = match kind {
+                QueryKind::Mpr | QueryKind::Penetration => (*self.ccd).mpr_tolerance,
+                QueryKind::Gjk | QueryKind::Proven => (*self.ccd).epa_tolerance,
+                QueryKind::Distance => (*self.ccd).dist_tolerance,
+            };
+            // Negated, so that NaN counts as negative.
+            if !(tolerance >= 0.0) {
+                if !kind.is_libccd() {
+                    return None;
+                }
+                tolerance = DEFAULT_TOLERANCE;
+            }
+            let max: c_ulong = (*self.ccd).max_iterations;
+            #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
+            let max_iterations = ITERATION_CAP.min(max as u64);
+            Some(Settings {
+                tolerance: tolerance.into(),
+                max_iterations,
+            })
+        }
+    }
+
+    /// Returns the pair with its centers or first direction; `None` if `ccd` or a callback that the query requires is
+    /// NULL, or a center is not finite.
+    ///
+    /// # Safety
+    /// \[inputs\] of the module contract.
+    #[inline(always)]
+    pub unsafe fn pair(
+        &self,
+        kind: QueryKind,
+        settings: Settings,
+        want: Want,
+    ) -> Option<Pair<Object, Object>> {
+        // SAFETY: the caller's guarantees are those of the callees.
         unsafe {
             let (obj1, obj2) = self.objects()?;
             let centers = match kind {
@@ -167,49 +206,8 @@ impl QueryArgs {
                 difference: MinkowskiDifference::new(obj1, obj2),
                 centers,
                 first_dir,
-                settings: Settings {
-                    tolerance: f64::INFINITY,
-                    max_iterations: ITERATION_CAP,
-                },
+                settings,
                 want,
-            })
-        }
-    }
-
-    /// Returns the pair with the caller's settings; `None` if [`QueryArgs::pair`] returns `None`. If the tolerance is
-    /// negative or NaN, libccd's calls use [`DEFAULT_TOLERANCE`]; other queries return `None`.
-    ///
-    /// # Safety
-    /// \[inputs\] of the module contract.
-    #[inline(always)]
-    pub unsafe fn prepare(&self, kind: QueryKind, want: Want) -> Option<Pair<Object, Object>> {
-        if self.ccd.is_null() {
-            return None;
-        }
-        // SAFETY: [inputs]; only the fields named are read.
-        unsafe {
-            let mut tolerance = match kind {
-                QueryKind::Mpr | QueryKind::Penetration => (*self.ccd).mpr_tolerance,
-                QueryKind::Gjk | QueryKind::Proven => (*self.ccd).epa_tolerance,
-                QueryKind::Distance => (*self.ccd).dist_tolerance,
-            };
-            // Negated, so that NaN counts as negative.
-            if !(tolerance >= 0.0) {
-                if !kind.is_libccd() {
-                    return None;
-                }
-                tolerance = DEFAULT_TOLERANCE;
-            }
-            let pair = self.pair(kind, want)?;
-            let max: c_ulong = (*self.ccd).max_iterations;
-            #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
-            let max_iterations = ITERATION_CAP.min(max as u64);
-            Some(Pair {
-                settings: Settings {
-                    tolerance: tolerance.into(),
-                    max_iterations,
-                },
-                ..pair
             })
         }
     }

@@ -51,7 +51,8 @@ pub unsafe fn run_query(
 ) -> Result<Penetration, Stop> {
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let pair = args.prepare(kind, want).ok_or(Fault::BadInput)?;
+        let settings = args.settings(kind).ok_or(Fault::BadInput)?;
+        let pair = args.pair(kind, settings, want).ok_or(Fault::BadInput)?;
         let (mut state, mut buffers) = (read(warm), LargeBuffers::default());
         let mut found = solver.run(&pair, &mut state, &mut buffers);
         buffers.free();

@@ -102,7 +102,9 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
             pos: false,
             points: want & CCD_WANT_POINTS != 0,
         };
-        let Some(pair) = args.prepare(QueryKind::Distance, wanted) else {
+        let kind = QueryKind::Distance;
+        let settings = args.settings(kind);
+        let Some(pair) = settings.and_then(|settings| args.pair(kind, settings, wanted)) else {
             return CCD_BAD_INPUT;
         };
         let (mut state, mut buffers) = (read(warm), LargeBuffers::default());

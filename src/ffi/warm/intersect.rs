@@ -9,7 +9,7 @@ use super::super::callbacks::{QueryArgs, QueryKind};
 use super::super::run::store_state;
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, read};
-use crate::types::Want;
+use crate::types::{Settings, Want};
 
 /// Tests a pair for overlap with the caller's state. Returns 1 or 0: a fault counts as no overlap.
 ///
@@ -22,7 +22,7 @@ pub(in crate::ffi) unsafe fn intersect(
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let Some(pair) = args.pair(kind, Want::NOTHING) else {
+        let Some(pair) = args.pair(kind, Settings::UNREAD, Want::NOTHING) else {
             return 0;
         };
         let mut state = read(warm);
