@@ -326,6 +326,36 @@ mod tests {
         }
     }
 
+    /// Tests boxes on one axis, so close that the direction from an edge below the origin is off by more than the
+    /// tolerance.
+    #[cfg(not(feature = "single"))]
+    #[test]
+    fn normal_of_a_face_is_used_close_to_the_origin() {
+        let mut r = Random::new(64);
+        let (mut most, gap) = (0, 3e-8);
+        for round in 0..200 {
+            let turn = r.rotation();
+            let half = Vec3::new(1.0, 1.0, 0.5);
+            let cube = placed(&corners(half), &turn, Vec3::zeros());
+            let other = placed(&corners(half), &turn, turn * Vec3::z() * (1.0 + gap));
+            let goal = Goal {
+                tolerance: 1e-9,
+                margin: 0.0,
+                max_distance: f64::INFINITY,
+                max_samples: 60,
+            };
+            let md = difference(hull(&cube), hull(&other));
+            let mut query = SupportQuery::new(&md, None, 0.0);
+            let mut fit = SphereFit::default();
+            let start = turn * Vec3::new(1.0, 1.0, 1.0).normalize();
+            let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
+            assert_eq!(found.status, Status::Converged, "round {round}");
+            assert!(found.lower <= gap + 1e-12 && gap - found.lower <= 1e-9);
+            most = most.max(found.iterations);
+        }
+        assert!(most <= 8, "{most} support points");
+    }
+
     #[test]
     fn intersecting_objects_have_the_origin_inside() {
         let mut r = Random::new(62);

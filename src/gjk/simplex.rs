@@ -258,7 +258,11 @@ impl Simplex {
                 }
             }
         };
-        if edge.distance2 > contact_eps * contact_eps {
+        // If the plane is as far as the edge within rounding, its normal is the direction: close to the origin that of
+        // the edge is mostly rounding error.
+        let least = edge.distance2.sqrt() - contact_eps;
+        let offset = n.dot(a);
+        if least > 0.0 && !(offset * offset >= least * least * n.norm_squared()) {
             return edge;
         }
         face(order, edge.weights, edge.distance2)
