@@ -46,24 +46,14 @@
 //! witness points: 4 to 9, 8 to 17, 15 to 28 and 26 to 41 % (`c-tests/tests/extension/pos.c`).
 
 use crate::contact::fan::{Fan, area2};
-use crate::contact::feature::{FeatureQuery, KnownPair, MAX_KNOWN};
+use crate::contact::feature::{FeatureQuery, KnownPair};
 use crate::contact::frame::ContactFrame;
-use crate::contact::tuning::IN_PLANE_DROP_TOL;
+use crate::contact::tuning::{DEEP_RANGE, DROP_TOL, FLANK_SLOPE, MAX_KNOWN};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
 use crate::types::Penetration;
-
-/// Depths, relative to the sum of both objects' extents from their centers along n, from which on the deep position counts,
-/// and from which on it alone does. Measured against the centroid of the overlap: at 0.2 the center of pressure is 4 % of
-/// the size closer (root mean square, boxes, hulls, curved bodies), at 0.4 both are 9 to 14 % off, at 0.55 the deep position
-/// is 3 % closer.
-const DEEP_RANGE: [f64; 2] = [0.2, 0.4];
-/// The assumed slope of flanks. Insensitive: 2 to 8 tried.
-const FLANK_SLOPE: f64 = 4.0;
-/// Least length of a side of the outline, in vertex offsets; shorter ones are skipped.
-const MIN_SIDE_OFFSETS: f64 = 6.0;
 
 /// Returns the contact position of a hit: the center of pressure of a shallow one, the deep position of a deep one, and a
 /// mean of both between. `set`: the known vertices of the search.
@@ -164,7 +154,7 @@ fn integrate<A: SupportMap, B: SupportMap>(
 /// fan.
 #[inline(always)]
 fn is_plane(face: &[Vec3; 4], fan: &Fan, vertex_offset: f64) -> bool {
-    if !face.iter().all(|v| v.z <= IN_PLANE_DROP_TOL) {
+    if !face.iter().all(|v| v.z <= DROP_TOL) {
         return false;
     }
     let slack = 2.0 * vertex_offset;
@@ -253,8 +243,6 @@ struct PressureSum {
     moment: Vec2,
     /// Width of a flank at the local depth d: d / s, metres.
     flank_width: f64,
-    /// Square of the least length of a side, m².
-    min_side2: f64,
     /// Least value of twice the area of a triangle, m²: areas are divisors.
     min_area: f64,
 }
@@ -266,7 +254,6 @@ impl PressureSum {
             volume: 0.0,
             moment: Vec2::zeros(),
             flank_width: depth / FLANK_SLOPE,
-            min_side2: MIN_SIDE_OFFSETS * MIN_SIDE_OFFSETS * vertex_offset * vertex_offset,
             min_area: f64::EPSILON * vertex_offset * vertex_offset,
         }
     }
@@ -275,13 +262,12 @@ impl PressureSum {
     /// head; `k` is its k'.
     #[inline(always)]
     fn add(&mut self, v: &Vec3, w: &Vec3) {
-        let length2 = offset(v, w).norm_squared();
         let area = area2(v, w);
         // A negative area would be a negative weight. Negated for NaN.
-        if !(length2 >= self.min_side2 && area >= 0.0) {
+        if !(area >= 0.0) {
             return;
         }
-        let length = length2.sqrt();
+        let length = offset(v, w).norm();
         let (a, b) = (v.z, w.z);
         let k = self.flank_width * length;
         let common = area + (area + k * (a + b)) * (a + b);

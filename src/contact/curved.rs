@@ -10,15 +10,13 @@
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, four_directions, is_within};
 use crate::contact::tuning::{
-    COMMON_DROP_FACTOR, IN_PLANE_DROP_TOL, MAX_CURVED_ASIDE, MAX_CURVED_DROP, MAX_TILT_TAN,
-    MIN_CURVED_DROP, MIN_CURVED_KNOWN, RIM_REL_TOL, SAME_DROP_TOL, SYMMETRY_REL_TOL,
+    COMMON_DROP_FACTOR, DROP_TOL, MAX_CURVED_REL, MAX_TILT_TAN, MIN_CURVED_DROP, POINT_REL,
+    REPEAT_WINDOW,
 };
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
-
-/// The coordinate of a diagonal unit vector.
-const H: f64 = core::f64::consts::FRAC_1_SQRT_2;
+use core::f64::consts::FRAC_1_SQRT_2 as H;
 
 impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: a
@@ -51,9 +49,9 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             [a, c].iter().for_each(|v| self.raise_extremes(extremes, v));
             return Ok(false);
         }
-        let tolerance = SYMMETRY_REL_TOL * self.extent;
-        fan.is_symmetric = (a + c).xy().norm_squared() < tolerance * tolerance
-            && (a.z - c.z).abs() < SAME_DROP_TOL;
+        let tolerance = POINT_REL * self.extent;
+        fan.is_symmetric =
+            (a + c).xy().norm_squared() < tolerance * tolerance && (a.z - c.z).abs() < DROP_TOL;
         let mirror = |v: &Vec3| {
             let along = 2.0 * axis.dot(&v.xy());
             Vec3::new(along * axis.x - v.x, along * axis.y - v.y, v.z)
@@ -64,16 +62,16 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         let is_round = |v: &Vec3, aside: f64| {
             let lost = v.z * self.depth_over_tilt;
             aside >= -self.vertex_offset
-                && aside <= MAX_CURVED_ASIDE * self.tilt * self.extent
+                && aside <= MAX_CURVED_REL * self.tilt * self.extent
                 && lost >= MIN_CURVED_DROP * aside
         };
-        let may_be_mirrored = fan.is_symmetric
-            || self.has_centers && has_axis && self.known.len() >= MIN_CURVED_KNOWN;
+        let may_be_mirrored =
+            fan.is_symmetric || self.has_centers && has_axis && self.known.len() >= REPEAT_WINDOW;
         let is_mirrored = may_be_mirrored
             && self.tilt < MAX_TILT_TAN
             && is_round(&a, aside_a)
             && is_round(&c, aside_c)
-            && c.z * self.depth_over_tilt <= MAX_CURVED_DROP * aside_c
+            && c.z * self.depth_over_tilt <= MAX_CURVED_REL * aside_c
             && self.is_below_known_planes(object, [&b, &d], tolerance);
         let mut between = None;
         if !is_mirrored {
@@ -82,7 +80,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             between = self.fit_disc_rim([&a, &b, &c, &d], &out);
             let normal = (b - a).cross(&(c - a));
             let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
-            let is_face = between.is_none() && drop_at_deepest < IN_PLANE_DROP_TOL;
+            let is_face = between.is_none() && drop_at_deepest < DROP_TOL;
             let is_corner = [&b, &d].iter().any(|v| {
                 let same = self.same_distance();
                 is_within(v, &a, same) || is_within(v, &c, same)
@@ -161,7 +159,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         let span2 = span.norm_squared();
         // For corners of other faces the chord mostly has another direction.
         let cross = span.perp(&chord);
-        if !(cross * cross <= RIM_REL_TOL * span2 * chord.norm_squared()) {
+        if !(cross * cross <= POINT_REL * span2 * chord.norm_squared()) {
             return None;
         }
         let radius = span.dot(&chord) / span2;
@@ -171,8 +169,8 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         };
         let is_there = |out, found: &Vec3| {
             let error = on_rim(out) - found;
-            let tolerance = RIM_REL_TOL * radius;
-            error.xy().norm_squared() <= tolerance * tolerance && error.z.abs() <= SAME_DROP_TOL
+            let tolerance = POINT_REL * radius;
+            error.xy().norm_squared() <= tolerance * tolerance && error.z.abs() <= DROP_TOL
         };
         // False for NaN.
         let is_rim = radius > 2.0 * self.vertex_offset

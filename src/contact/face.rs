@@ -4,7 +4,7 @@
 //! Finds the contact face of one object: its corners are support vertices along directions close to the normal.
 //!
 //! The *drop* of a point is its distance below the support plane of the normal n. The *size* is the largest distance
-//! between the vertices found at the tilt [`WIDE_TILT`].
+//! between the vertices found at the tilt [`MAX_TILT_TAN`].
 //!
 //! 1. *Face.* The face consists of the points with a drop of at most the slop. The support vertex of n + t, with a
 //!    small tilt t perpendicular to n, maximises t·r − drop(r), r being its position in the contact frame. At
@@ -30,6 +30,9 @@
 
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
+use crate::contact::tuning::{
+    MAX_LEAN, MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS, SIDE_LEAN,
+};
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
@@ -40,30 +43,12 @@ use core::mem::swap;
 const MAX_QUERIES: u32 = 24;
 /// Largest number of corners of a face: one more than eight, so that a face of eight is known to be complete.
 pub const MAX_CORNERS: usize = 9;
-/// Tilt of the first directions, a tangent: 14°. A smaller one underestimates the size of curved objects; with a
-/// larger one, surfaces adjacent to the face are taken for it.
-const WIDE_TILT: f64 = 0.25;
-/// Distance, in slops, below which samples may be of one rounded corner. The samples of a ball are 8 slops apart.
-const ROUND_CORNER_SLOPS: f64 = 16.0;
-/// Lean of the outward direction of a side towards its second corner, in tilts. A corner beyond the side by less than
-/// this angle may be missed: at most 1e-4 side² of area.
-const SIDE_LEAN: f64 = 1.0 / 4096.0;
 /// The first three tilt directions, unit.
 pub const THREE_DIRECTIONS: [Vec2; 3] = [
     Vec2::new(1.0, 0.0),
     Vec2::new(-0.5, 0.866_025_403_784_438_6),
     Vec2::new(-0.5, -0.866_025_403_784_438_6),
 ];
-/// Least slop, relative to the depth. Along a normal whose depth is 0.1 % above the minimum the corners of a face
-/// differ in height by that error times the ratio of the corners' distance to the distance of the contact from the
-/// closer corner. Measured on 17,351 pairs of boxes and of a box and an ellipsoid, 1 cm deep, with a requested slop
-/// of 0: a corner is found instead of a face or an edge in 212 pairs with the value 0, in 21 with 0.001, in 12 with
-/// 0.002, in 1 with 0.01.
-const MIN_SLOP_REL: f64 = 0.01;
-/// Least slop, in rounding errors of a coordinate: the tilt must be well above the rounding error of the
-/// directions in a callback.
-const MIN_SLOP_ROUNDINGS: f64 = 4.0;
-
 /// A support vertex in the contact frame (z: its drop), and its direction.
 #[derive(Clone, Copy, Default)]
 pub struct FaceSample {
@@ -265,7 +250,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let mut size = 0.0;
         let mut wide = [self.first; 3];
         for i in 0..3 {
-            let new = self.query(THREE_DIRECTIONS[i] * WIDE_TILT)?;
+            let new = self.query(THREE_DIRECTIONS[i] * MAX_TILT_TAN)?;
             for known in &wide {
                 size = larger(size, offset(&known.found, &new.found).norm());
             }
@@ -274,10 +259,10 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         // At most the size of the face, at least some rounding errors.
         self.face.slop = slop.min(size).max(MIN_SLOP_ROUNDINGS * self.face.coord_eps);
         if size > self.face.coord_eps {
-            self.face.tilt_tan = lesser(2.0 * self.face.slop / size, WIDE_TILT);
+            self.face.tilt_tan = lesser(2.0 * self.face.slop / size, MAX_TILT_TAN);
             for mut new in wide {
                 if new.found.z > self.face.slop {
-                    new = self.query_corner(new.tilt * (self.face.tilt_tan / WIDE_TILT))?;
+                    new = self.query_corner(new.tilt * (self.face.tilt_tan / MAX_TILT_TAN))?;
                 }
                 if new.found.z <= self.face.slop && !self.mark_if_found(&new) {
                     self.face.samples.push(new);
@@ -354,7 +339,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
         let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
         let lean = larger(2.0 * self.face.coord_eps / length, SIDE_LEAN * tilt_tan);
-        let lean = lesser(lean, tilt_tan / 64.0);
+        let lean = lesser(lean, MAX_LEAN * tilt_tan);
         let new = self.query_corner(outward_tilt(&a, &b, tilt_tan, lean))?;
         if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
@@ -449,7 +434,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     /// Makes the polygon of the samples.
     fn build_polygon(&mut self) {
         // A corner found twice may differ by the rounding of both.
-        let merged = larger(self.face.slop, 4.0 * self.face.coord_eps);
+        let merged = larger(self.face.slop, MIN_SLOP_ROUNDINGS * self.face.coord_eps);
         let samples = self.face.samples;
         let corners: Polygon<MAX_CORNERS> = samples.iter().map(|s| s.corner).collect();
         let corners = corners.simplified(merged, self.min_corner_height());

@@ -4,7 +4,7 @@
 //! The vertices of a feature, in order around the deepest point.
 
 use crate::contact::polygon_search::MAX_CORNERS;
-use crate::contact::tuning::SAME_DROP_TOL;
+use crate::contact::tuning::DROP_TOL;
 use crate::geometry::polygon::Vec2;
 use crate::math::{Vec3, ZERO, larger};
 
@@ -153,7 +153,7 @@ impl Fan {
         let (weight_p, weight_q) = (area2(v, q) * per_area, area2(p, v) * per_area);
         per_area > 0.0
             && weight_p + weight_q < 1.0
-            && weight_p * p.z + weight_q * q.z < v.z + SAME_DROP_TOL
+            && weight_p * p.z + weight_q * q.z < v.z + DROP_TOL
     }
 
     /// Mirrors the fan through the deepest point.

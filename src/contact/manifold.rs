@@ -17,6 +17,7 @@
 use crate::contact::face::{Face, MAX_CORNERS, faces};
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
+use crate::contact::tuning::MAX_TILT_TAN;
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
@@ -37,9 +38,6 @@ pub struct Contact {
 
 /// Largest number of corners of a region: each side of one face adds at most one to the corners of the other.
 pub const MAX_CONTACTS: usize = 2 * MAX_CORNERS;
-/// Sine of the angle below which segments count as nearly parallel: 10°.
-const MAX_PARALLEL_SINE: f64 = 0.17;
-
 /// A contact manifold: a list of contacts, the deepest first.
 pub type Manifold = FixedVec<Contact, MAX_CONTACTS>;
 
@@ -186,7 +184,7 @@ fn overlap_of_segments(
 ) -> Polygon<MAX_CONTACTS> {
     let (u, v, slack) = (offset(p, q), offset(r, s), halfwidths[0] + halfwidths[1]);
     let (size, sine) = (u.norm() * v.norm(), u.perp(&v));
-    if sine.abs() > MAX_PARALLEL_SINE * size {
+    if sine.abs() > MAX_TILT_TAN * size {
         let [t, k] = [v, u].map(|along| offset(p, r).perp(&along) / sine);
         let is_on_both = [t, k].iter().all(|t| (0.0..=1.0).contains(t));
         return is_on_both.then(|| p.lerp(q, t)).into_iter().collect();

@@ -5,7 +5,7 @@
 //! contacts with their ids.
 //!
 //! 1. *Faces.* For a polygon whose corners are all known, the outward direction of each side, with a
-//!    [`CACHED_LEAN`] to its second corner, is queried again; this confirms each corner, and that there is no corner
+//!    [`MAX_LEAN`] to its second corner, is queried again; this confirms each corner, and that there is no corner
 //!    beyond a side. For other faces the directions that found the corners are queried again.
 //! 2. *Motion.* If the vertices moved as one rigid body within a quarter of the slop, the face is the same.
 //! 3. *Ids.* A contact keeps its id while it moves with either object, within a quarter of the region's size: each
@@ -16,6 +16,7 @@
 use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_DIRECTIONS, outward_tilt};
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold::MAX_CONTACTS;
+use crate::contact::tuning::MAX_LEAN;
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger};
@@ -23,9 +24,6 @@ use nalgebra::UnitComplex;
 
 /// Contacts whose ids are stored.
 const MAX_IDS: usize = 8;
-/// Lean of the outward direction of a side towards its second corner, in tilts: 3.6°, by which the face may rotate
-/// about the normal. Insensitive: 1/64 to 1/8 tried.
-const CACHED_LEAN: f64 = 1.0 / 16.0;
 /// Error of the vertices, which are stored as `f32`, relative to the size of the face.
 const F32_REL_TOL: f64 = 4.0 * f32::EPSILON as f64;
 
@@ -91,7 +89,7 @@ fn confirming_samples(
         let tilt = match n {
             1 => THREE_DIRECTIONS[i % 3] * tilt_tan,
             2 if i > 1 => offset(last, corner).normalize() * tilt_tan,
-            _ => outward_tilt(last, corner, tilt_tan, CACHED_LEAN * tilt_tan),
+            _ => outward_tilt(last, corner, tilt_tan, MAX_LEAN * tilt_tan),
         };
         FaceSample::new(tilt, *corner)
     };

@@ -10,9 +10,7 @@
 
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, KnownPair, four_directions, is_within};
-use crate::contact::tuning::{
-    COMMON_DROP_FACTOR, MIN_COVER, POINT_REL, SAME_DROP_TOL, SYMMETRY_REL_TOL,
-};
+use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL, MIN_COVER, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
@@ -81,7 +79,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
                     if is_side && !is_covered {
                         polygon.open_length2[side % MAX_CORNERS] = 0.0;
                     }
-                    if n == 4 && polygon.is_parallelogram(SYMMETRY_REL_TOL * self.extent) {
+                    if n == 4 && polygon.is_parallelogram(POINT_REL * self.extent) {
                         break;
                     }
                 }
@@ -264,7 +262,7 @@ impl Polygon {
     fn is_parallelogram(&self, tolerance: f64) -> bool {
         let [a, b, c, d, ..] = &self.corners;
         let gap = a + c - b - d;
-        gap.xy().norm_squared() < tolerance * tolerance && gap.z.abs() < SAME_DROP_TOL
+        gap.xy().norm_squared() < tolerance * tolerance && gap.z.abs() < DROP_TOL
     }
 
     /// Makes the fan of the corners, each moved outwards; of an edge, its ends also to both sides.
