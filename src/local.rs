@@ -248,7 +248,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 MIN_LENGTH_REL * self.query.scale.size(),
             );
             // The ring's tilt is half of that of the directions that confirm a minimum.
-            let ring_tilt = 0.5 * CONFIRM_TILT_RAD;
+            let ring_tilt = Some(0.5 * CONFIRM_TILT_RAD);
             let portal = discover(self.query, self.set, &ray, length, tolerance, ring_tilt)?;
             let step = match portal {
                 Some(mut portal) => self.refine(&ray, &mut portal, tolerance)?,

@@ -17,7 +17,8 @@
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
 //! so that the portal of a shallow contact is small and close to the minimum. If v1 is on the ray itself, the portal
-//! is a *ring*: the support points of three directions around the ray.
+//! is a *ring*: the support points of three directions around the ray. A caller whose ray must cross the portal gets
+//! perpendicular directions there.
 //!
 //! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
 //! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
@@ -46,8 +47,9 @@ pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) 
 }
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
-/// metres. `gap`: the allowed difference of the bounds, metres. `ring_tilt`: tangent of the tilt of [`ring`]. The
-/// corners are in the order in which the portal's normal points along the ray. A full set ends the discovery: `None`.
+/// metres. `gap`: the allowed difference of the bounds, metres. `ring_tilt`: tangent of the tilt of [`ring`]; `None` for
+/// a portal that the ray must cross, and which is no ring. The corners are in the order in which the portal's normal
+/// points along the ray. A full set ends the discovery: `None`.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -58,7 +60,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     ray: &Vec3,
     length: f64,
     gap: f64,
-    ring_tilt: f64,
+    ring_tilt: Option<f64>,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
     trace::stage("discovery");
     let mut v1 = set.farthest_vertex(ray);
@@ -67,16 +69,29 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     let mut towards_ray = ray * v1.w.dot(ray) - v1.w;
     // The height of v1 and v2 along `towards_ray`, at most 0.
     let mut height = towards_ray.dot(&v1.w);
+    let mut failures = 0;
     if !(-height > 0.5 * gap * length) {
-        match ring(query, set, ray, ring_tilt)? {
-            None => (towards_ray, height) = (perpendicular(ray), 0.0),
-            portal => return Ok(portal),
+        match ring_tilt {
+            Some(tilt) => match ring(query, set, ray, tilt)? {
+                None => (towards_ray, height) = (perpendicular(ray), 0.0),
+                portal => return Ok(portal),
+            },
+            None => {
+                // Made perpendicular once more: a large part of the short vector is rounding.
+                let way = normalise_unscaled(&(towards_ray - ray * ray.dot(&towards_ray)));
+                (towards_ray, height) = (way.unwrap_or_else(|| perpendicular(ray)), 0.0);
+                // A tilt would be too small to find another point.
+                failures = MAX_TILTS;
+            }
         }
     }
-    let tiny = 1e-12 * query.scale.size2();
+    let mut tiny = 1e-12 * query.scale.size2();
     let mut side = 1.0;
-    let mut failures = 0;
     for _ in 0..MAX_STEPS {
+        if ring_tilt.is_none() {
+            // An edge may be as short as the tolerance.
+            tiny = 1e-12 * query.scale.size() * towards_ray.norm();
+        }
         // Closer to the ray than v1 and v2.
         let is_closer = |w: &Vec3| towards_ray.dot(w) > 0.999 * height + tiny;
         let mut next = set.farthest_vertex(&towards_ray);
@@ -111,10 +126,12 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
                     v1 = next;
                 } else if side * ray.dot(&next.w.cross(&v1.w)) < 0.0 {
                     *v2 = next;
-                } else {
-                    let is_beyond = towards_ray.dot(&next.w) > 0.0;
+                } else if towards_ray.dot(&next.w) > 0.0 {
                     let [first, second] = if side > 0.0 { [v1, *v2] } else { [*v2, v1] };
-                    return Ok(is_beyond.then_some([first, second, next]));
+                    return Ok(Some([first, second, next]));
+                } else {
+                    // A known difference between the edge and the ray.
+                    *v2 = next;
                 }
                 v2
             }
@@ -302,7 +319,7 @@ mod tests {
             &ray,
             length,
             gap,
-            (2.0 * gap / length).sqrt(),
+            Some((2.0 * gap / length).sqrt()),
         )
         .ok()??;
         let mut portal = found;

@@ -245,8 +245,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let gap = self.allowed_gap();
         let query = &mut *self.query;
         let length = query.upper.depth - self.interior.v.dot(ray);
-        let Some(mut portal) = discover(query, set, ray, length, gap, (2.0 * gap / length).sqrt())?
-        else {
+        let ring_tilt = Some((2.0 * gap / length).sqrt());
+        let Some(mut portal) = discover(query, set, ray, length, gap, ring_tilt)? else {
             return Ok(None);
         };
         refine(

@@ -180,8 +180,8 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     let ray = -inner / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
-    let Some(mut portal) = discover(query, set, &ray, length, gap, (2.0 * gap / length).sqrt())?
-    else {
+    let ring_tilt = Some((2.0 * gap / length).sqrt());
+    let Some(mut portal) = discover(query, set, &ray, length, gap, ring_tilt)? else {
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.
