@@ -121,10 +121,9 @@ pub struct Settings {
     /// the last place of the coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size
     /// of the Minkowski difference.
     pub tolerance: Real,
-    /// Limit on the support points after the first tetrahedron, in `penetration_along` and
-    /// `penetration_planar` on the portal steps. The library's own limits are 160, 320 for proofs,
-    /// along a direction and planar, 380 for distances. No query was seen to take more than 400
-    /// support points.
+    /// Limit on the support points after the first tetrahedron or portal, in `penetration_planar` on
+    /// the portal steps. The library's own limits are 160, 320 for proofs, along a direction and
+    /// planar, 380 for distances. No query was seen to take more than 400 support points.
     pub max_iterations: u64,
     /// The requested results.
     pub want: Want,

@@ -55,6 +55,7 @@
     reason = "Real is f64 in double precision"
 )]
 
+mod along;
 mod api;
 mod contact;
 mod epa;

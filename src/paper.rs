@@ -2,14 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The paper's method as published: W. Gao, "Efficient Incremental Penetration Depth Estimation between Convex
-//! Geometries", 2023, for comparison, and the query along a direction that is based on it.
-//!
-//! | file | contents |
-//! |---|---|
-//! | [`gao`] | Algorithms 1 and 3 to 5, on support calls only |
-//! | [`directional`] | the depth along a given direction |
+//! Geometries", 2023, for comparison, and the query that runs it. [`gao`]: Algorithms 1 and 3 to 5, on support calls
+//! only.
 
-pub mod directional;
 pub mod gao;
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
@@ -49,20 +44,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         } else {
             hit.middle()
         };
-        Ok(hit)
-    }
-
-    /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
-    #[inline(never)]
-    pub fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        let (mut hit, portal) = directional::along(&self.difference, dir, &self.settings)?;
-        let mut set = VertexSet::EMPTY;
-        for plane in portal.iter().flat_map(|p| &p.planes) {
-            set.push(&plane.dir, &plane.point);
-        }
-        self.prove_overlap(&mut hit, &mut set, false)?;
-        *state = WarmStart::towards(hit.normal);
-        hit.pos = hit.middle();
         Ok(hit)
     }
 }

@@ -18,6 +18,7 @@
 
 pub mod signed_distance;
 
+use crate::along;
 use crate::contact::center_of_pressure::contact_position;
 use crate::epa::buffers::{Arena, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
 use crate::epa::penetration::EpaRequest;
@@ -227,6 +228,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<Penetration, Stop> {
         let limits = EpaLimits::new(&self.settings, 0.0, MAX_PROVEN_POINTS);
         self.minimize(None, &limits, false, state, Some(arena))
+    }
+
+    /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
+    #[inline(never)]
+    pub fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
+        let mut set = VertexSet::EMPTY;
+        let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
+        self.prove_overlap(&mut hit, &mut set, false)?;
+        *state = WarmStart::towards(hit.normal);
+        hit.pos = hit.middle();
+        Ok(hit)
     }
 
     /// Finds the global minimum of the depth from the state. `interior`: a point trusted to lie in D.

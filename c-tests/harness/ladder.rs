@@ -7,8 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules, from the bottom to the top.
-const MODULES: &str =
-    "math types trace geometry minkowski portal gjk epa local contact query paper solver ffi api";
+const MODULES: &str = "math types trace geometry minkowski portal gjk epa local along contact query paper solver ffi api";
 
 /// Returns the Rust files below a folder.
 fn files(dir: &Path) -> Vec<PathBuf> {

@@ -28,7 +28,7 @@
  * Lengths and tolerances are metres. Tolerances are raised to a few units in the last place of the
  * coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size of D, which is max |p|
  * for p in D. A call reads only the tolerance that it names. max_iterations limits the support
- * points after the first tetrahedron (in ccdPenetrationAlong and ...Planar the portal steps). The
+ * points after the first tetrahedron or portal (in ccdPenetrationPlanar the portal steps). The
  * library's own limits are 160, 320 for ...Proven, ...Along and ...Planar, 380 for distances; no
  * query was seen to take more than 400 support points. Object pointers are passed to the callbacks
  * and never dereferenced. Queries are re-entrant and keep no data except the caller's state.

@@ -88,7 +88,7 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
     loop {
         let next = match search.follow(&ray)? {
             RayEnd::Touch => return Ok(Some(make_result(&search.best, None))),
-            RayEnd::Limit(_) => return Ok(None),
+            RayEnd::Limit => return Ok(None),
             RayEnd::Shortcut(plane) => plane,
             RayEnd::Vertex => match perturbed_from {
                 None => {
@@ -140,7 +140,7 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
 
 /// Makes the result of a support plane. The witness points are those of the point at which the ray crosses
 /// `portal`; without a portal, those of the support point.
-pub fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
+fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
     let (point1, point2) = match portal {
         Some(p) => p.witnesses(),
         None => (plane.point.v1, plane.point.v2),
@@ -157,7 +157,7 @@ pub fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration
 
 /// Evaluates the support plane along unit `dir`.
 #[inline]
-pub fn support_plane<A: SupportMap, B: SupportMap>(
+fn support_plane<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     dir: Vec3,
 ) -> Result<SupportPlane, Fault> {
@@ -168,18 +168,18 @@ pub fn support_plane<A: SupportMap, B: SupportMap>(
 
 /// A portal: three support points whose triangle the ray crosses.
 #[derive(Clone, Copy)]
-pub struct Portal {
+struct Portal {
     /// Unit direction of the ray.
-    pub ray: Vec3,
+    ray: Vec3,
     /// The support planes of v1, v2, v3, in the order in which the triangle's normal points
     /// along the ray.
-    pub planes: [SupportPlane; 3],
+    planes: [SupportPlane; 3],
 }
 
 impl Portal {
     /// Returns the outward unit normal of the triangle; `None` if it has no area.
     #[inline]
-    pub fn normal(&self) -> Option<Vec3> {
+    fn normal(&self) -> Option<Vec3> {
         let [a, b, c] = self.planes.each_ref().map(|p| &p.point.v);
         unit(&math::normal(a, b, c))
     }
@@ -209,7 +209,7 @@ impl Portal {
     /// Replaces one vertex by the point of `w`, beyond the triangle, so that the ray
     /// still crosses (paper, Algorithm 1, update_portal).
     #[inline]
-    pub fn update(&mut self, w: SupportPlane) {
+    fn update(&mut self, w: SupportPlane) {
         let c = self.ray.cross(&w.point.v);
         // The signs are the sides of the vertices relative to the plane through the ray and w.
         // The ray crosses the triangle of w and two vertices on opposite sides, so w replaces the
@@ -226,17 +226,9 @@ impl Portal {
         self.planes[replaced] = w;
     }
 
-    /// Returns the parameter of the triangle along the ray: |p|, negative behind the origin. It is the mean of the
-    /// vertices with the weights T, which rounding does not move out of the triangle.
-    pub fn ray_parameter(&self) -> f64 {
-        let t = self.weights();
-        let v = self.planes.each_ref().map(|p| self.ray.dot(&p.point.v));
-        (t[0] * v[0] + t[1] * v[1] + t[2] * v[2]) / (t[0] + t[1] + t[2])
-    }
-
     /// Returns the points of obj1 and obj2 whose difference is the point at which the ray crosses the
     /// triangle. Both are convex combinations of the objects' own support points.
-    pub fn witnesses(&self) -> (Vec3, Vec3) {
+    fn witnesses(&self) -> (Vec3, Vec3) {
         let points = self.planes.each_ref().map(|p| &p.point);
         let weights = self.weights().map(|t| t.max(0.0));
         let sum: f64 = weights.iter().sum();
@@ -255,12 +247,12 @@ fn triple(a: &Vec3, b: &Vec3, c: &Vec3) -> f64 {
 /// Returns the rounding error of a support point whose largest coordinate is `size`, metres. A smaller depth or gap
 /// counts as 0.
 #[inline]
-pub fn rounding(size: f64) -> f64 {
+fn rounding(size: f64) -> f64 {
     8.0 * EPSILON * size
 }
 
 /// Reason why the search along a ray ended.
-pub enum RayEnd {
+enum RayEnd {
     /// The ray leaves D between the portal and this support plane, at most the tolerance apart.
     Converged(Portal, SupportPlane),
     /// The shortcut of Algorithm 5: the support value of this plane is at most the
@@ -271,8 +263,8 @@ pub enum RayEnd {
     Vertex,
     /// The least support value is 0 within rounding.
     Touch,
-    /// The iterations are used up, or rounding prevents a refinement. The last portal, if there was one.
-    Limit(Option<Portal>),
+    /// The iterations are used up, or rounding prevents a refinement.
+    Limit,
 }
 
 /// The stop criterion of portal refinement.
@@ -282,29 +274,27 @@ pub enum Until {
     Normal,
     /// The bounds meet along the normal, or the shortcut of Algorithm 5 applies.
     Shortcut,
-    /// The bounds meet along the ray (query `along`).
-    Ray,
 }
 
 /// The state of a search from ray to ray. A separating direction ends it ([`Stop::Separated`]).
-pub struct RaySearch<'q, A, B> {
+struct RaySearch<'q, A, B> {
     /// The Minkowski difference.
-    pub md: &'q MinkowskiDifference<A, B>,
+    md: &'q MinkowskiDifference<A, B>,
     /// The largest gap between the bounds, metres.
-    pub tolerance: f64,
+    tolerance: f64,
     /// The stop criterion.
-    pub until: Until,
+    until: Until,
     /// For a D that lies in a plane, the unit normal of that plane.
-    pub plane_normal: Option<Vec3>,
+    plane_normal: Option<Vec3>,
     /// The iterations left.
-    pub budget: u64,
+    budget: u64,
     /// The support plane with the least support value so far, which may be a separating one.
-    pub best: SupportPlane,
+    best: SupportPlane,
 }
 
 impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// Counts an iteration. Returns `false` if none was left.
-    pub fn take_iteration(&mut self) -> bool {
+    fn take_iteration(&mut self) -> bool {
         let left = self.budget > 0;
         self.budget = self.budget.saturating_sub(1);
         left
@@ -315,7 +305,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// # Errors
     /// [`Stop::Separated`] for a negative support value; [`Stop::Fault`] for a point that is not finite.
     #[inline]
-    pub fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
+    fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
         let plane = support_plane(self.md, n)?;
         if plane.depth < self.best.depth {
             self.best = plane;
@@ -328,7 +318,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
 
     /// Follows the ray along `first.dir` to the boundary of D, by Algorithm 1 or
     /// Algorithm 5 of the paper.
-    pub fn follow(&mut self, first: &SupportPlane) -> Result<RayEnd, Stop> {
+    fn follow(&mut self, first: &SupportPlane) -> Result<RayEnd, Stop> {
         let found = match self.plane_normal {
             Some(m) => self.find_segment(first, &m)?,
             None => self.find_portal(first)?,
@@ -381,7 +371,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
                 return Ok(Ok(portal));
             }
         }
-        Ok(Err(RayEnd::Limit(None)))
+        Ok(Err(RayEnd::Limit))
     }
 
     /// Finds a segment that the ray along `first.dir` crosses, in the plane with unit normal m. With side = m × d,
@@ -410,7 +400,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     }
 
     /// Refines a portal: the loop of Algorithms 1 and 5.
-    pub fn refine(&mut self, mut portal: Portal) -> Result<RayEnd, Stop> {
+    fn refine(&mut self, mut portal: Portal) -> Result<RayEnd, Stop> {
         while self.take_iteration() {
             // Without a normal along the ray the three points are on a line within rounding,
             // and the portal cannot be refined further.
@@ -430,19 +420,11 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
                 },
                 evaluated => evaluated?,
             };
-            let mut gap = plane.depth - inner;
-            let mut least = floor;
-            let mut most = self.tolerance;
-            if self.until == Until::Ray {
-                gap /= along;
-                least /= along;
-                // The rounding error is subtracted from the lower bound.
-                most -= least;
-            }
+            let gap = plane.depth - inner;
             // Converged: the gap is within the tolerance, and the origin is on the inner side of the
             // portal by more than rounding, so that the support plane does not exclude the origin.
             // NaN (a plane parallel to the ray) ends the loop too.
-            if !(gap > least) || (gap <= most && inner > floor) {
+            if !(gap > floor) || (gap <= self.tolerance && inner > floor) {
                 return Ok(RayEnd::Converged(portal, plane));
             }
             if self.until == Until::Shortcut && plane.depth * along <= inner {
@@ -461,7 +443,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
                 }
             }
         }
-        Ok(RayEnd::Limit(Some(portal)))
+        Ok(RayEnd::Limit)
     }
 }
 

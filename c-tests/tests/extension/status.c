@@ -64,7 +64,8 @@ static void support_limit(const call_t *call)
           "%s: depth %g", call->name, (double)p->depth);
 }
 
-/* At tolerance 0 the bounds often cannot meet. (In single precision they do: the library computes in double.) */
+/* At tolerance 0 the bounds often cannot meet: the ray is at a small angle to the face through which it leaves, and the
+ * rounding of the face is divided by the sine. (In single precision they do: the library computes in double.) */
 static void rounding(void)
 {
     const ccd_t ccd = query(0);
@@ -72,8 +73,10 @@ static void rounding(void)
     int count[CCD_STATUS_INCONSISTENT_SUPPORT + 1] = {0};
     for (int i = 0; i < 200; i++) {
         results_t results;
-        shape_t a, b;
-        ellipsoids(&a, &b);
+        shape_t a = shape_box(1, 1, 0.02), b = shape_box(0.01, 0.02, 0.03);
+        double rot[9];
+        rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
+        shape_turn(&a, rot);
         count[status_of(call, &a, &b, &ccd, &results)]++;
         CHECK(results.penetration.depth_lower > 0, "bound %g", (double)results.penetration.depth_lower);
     }

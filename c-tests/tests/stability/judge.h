@@ -475,10 +475,8 @@ static inline int judge_points(const entry_t *e, const answer_t *x, const shape_
     const double bound = point_tolerance(e, x, q), from_pos = bound + (0.5 + 1.0 / 256) * x->depth;
     const double value = x->depth * truth_dot3(x->dir, x->normal), opposite[3] = {-x->normal[0], -x->normal[1], -x->normal[2]};
     const int has_centre = x->has_pos && (!x->has_bounds || (x->code == CCD_HIT && e->call != CALL_ALONG && e->call != CALL_PLANAR));
-    /* The published method has at its limit the witness points of its best support plane, which are not the depth apart;
-     * at a tolerance near 0 so have the queries that it is the base of. */
-    const int is_paper = e->call == CALL_INCREMENTAL || e->call == CALL_ALONG;
-    const int are_apart = !is_paper || (x->code == CCD_HIT && q->limit != LIMIT_ANYWHERE);
+    /* The published method has at its limit the witness points of its best support plane, which are not the depth apart. */
+    const int are_apart = e->call != CALL_INCREMENTAL || (x->code == CCD_HIT && q->limit != LIMIT_ANYWHERE);
     double d[3], across2 = 0, along;
     int faults = 0;
     if (has_centre && (is_outside(a, x->pos, from_pos, POINTS_BY_PLANES) || is_outside(b, x->pos, from_pos, POINTS_BY_PLANES)))
