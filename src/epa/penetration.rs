@@ -11,8 +11,9 @@
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
-//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron; if it does not come to contain the origin, or
-//!    rounding ends it, from two tetrahedra of GJK. Full buffers are replaced by larger ones.
+//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, whose center is replaced by a support point if it
+//!    is close to the origin; if the polytope does not come to contain the origin, or rounding ends it, from two
+//!    tetrahedra of GJK. Full buffers are replaced by larger ones.
 //! 6. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
 //! Departures. Steps 3 to 5 take known differences before callbacks. If a known difference is beyond the plane of the
@@ -42,6 +43,7 @@ use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
+use crate::minkowski::tuning::SMALL_PART;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{discover, refine};
@@ -268,12 +270,18 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         gap.allowed(&query.scale, query.upper.depth)
     }
 
-    /// Returns the interior point as a corner.
-    fn interior_vertex(&self) -> Vertex {
-        Vertex {
+    /// Returns the fourth corner of the tetrahedron of the portal: the interior point; in place of a center that is close
+    /// to the origin, which the polytope would soon enclose, the support point opposite to the upper bound.
+    fn find_apex(&mut self, set: &mut VertexSet<SMALL_VERTICES>) -> Result<Vertex, Stop> {
+        let SupportPlane { dir, depth, .. } = self.query.upper;
+        let is_central = -dir.dot(&self.interior.v) < SMALL_PART * depth;
+        if is_central && self.request.center.is_some() && !set.is_full() {
+            return Ok(self.query.evaluate(set, &-dir)?.vertex());
+        }
+        Ok(Vertex {
             w: self.interior.v,
             pair: VertexPair::INTERIOR,
-        }
+        })
     }
 
     /// Tries to prove the minimum from the tetrahedron of interior point and portal, and stores the proof. Returns
@@ -343,12 +351,12 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 set.truncate(SMALL_VERTICES - START_VERTICES);
             }
             let dir = self.query.upper.dir;
-            let start = match attempt {
-                0 => portal.map(|[a, b, c]| [self.interior_vertex(), *a, *b, *c]),
-                1 => Some(self.find_gjk_tetrahedron(set, &-dir)?),
-                _ => Some(self.find_gjk_tetrahedron(set, &dir)?),
+            let start = match (attempt, portal) {
+                (0, None) => continue,
+                (0, Some([a, b, c])) => [self.find_apex(set)?, *a, *b, *c],
+                (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
+                _ => self.find_gjk_tetrahedron(set, &dir)?,
             };
-            let Some(start) = start else { continue };
             let mut surface = SmallSurface::blank(self.query.scale.size());
             let status = match self.expand_small(set, &mut surface, &start)? {
                 _ if surface.is_blank() => continue,
