@@ -157,6 +157,8 @@ cargo test --test integration known_costs
 cargo test --test integration no_panic
 cargo test -p lab -- --nocapture libraries_are static_link
 cargo test -p lab charts_test::
+cargo test -p lab compare::
+cargo test -p lab fcl::
 END
 run "tests with another compiler" "ok. [1-9]" 's/$/ cargo test --test integration contract::distances/' clang clang++ <<'END'
 CC=clang CXX=clang++
@@ -210,6 +212,9 @@ END
 elsewhere "simulations: the wheel; long: the tower" <<'END'
 python c-tests/lab/engines/wheel.py 1000
 ode_pile 1 3000 6 tower
+END
+elsewhere "by hand: needs a nightly Rust, which nothing else does" <<'END'
+sh c-tests/tools/check.sh miri
 END
 elsewhere "a release" <<'END'
 sh cmake/packages/release.sh OUT
