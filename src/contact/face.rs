@@ -28,7 +28,7 @@
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
 //! the whole query; here only the support function is evaluated along tilted normals.
 
-use crate::contact::frame::ContactFrame;
+use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
 use crate::contact::tuning::{
     MAX_LEAN, MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS, SIDE_LEAN,
@@ -142,15 +142,6 @@ impl Face {
             _ => 0.5 * self.slop,
         }
     }
-}
-
-/// Returns the tilt of the outward direction of the side from `a` to `b` in which both corners have the same value,
-/// changed by `lean` towards `b`.
-pub fn outward_tilt(a: &Vec3, b: &Vec3, tilt: f64, lean: f64) -> Vec2 {
-    let along = offset(a, b);
-    let length = along.norm();
-    let lean = ((b.z - a.z) / length).max(-tilt).min(tilt) + lean;
-    (Vec2::new(along.y, -along.x) * tilt + along * lean) / length
 }
 
 /// State of the search for the corners of one face.
@@ -283,8 +274,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     /// Returns whether the vertices of two samples are the same within rounding.
     fn is_same(&self, a: &FaceSample, b: &FaceSample) -> bool {
-        let difference = (a.found - b.found).abs();
-        difference.xy().norm() <= self.face.coord_eps && difference.z <= self.face.coord_eps
+        max_abs(&(a.found - b.found)) <= self.face.coord_eps
     }
 
     /// Returns whether two samples may be of one rounded corner.
@@ -338,9 +328,9 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         }
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
         let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
-        let lean = larger(2.0 * self.face.coord_eps / length, SIDE_LEAN * tilt_tan);
-        let lean = lesser(lean, MAX_LEAN * tilt_tan);
-        let new = self.query_corner(outward_tilt(&a, &b, tilt_tan, lean))?;
+        let lean = larger(2.0 * self.face.coord_eps / (length * tilt_tan), SIDE_LEAN);
+        let out = outwards(&a, &b, 1.0 / tilt_tan, lesser(lean, MAX_LEAN));
+        let new = self.query_corner(out * tilt_tan)?;
         if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
         }

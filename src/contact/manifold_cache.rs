@@ -13,8 +13,8 @@
 //!
 //! Valid for the swapped pair too: faces are stored by the orientation of the frame, not by object.
 
-use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_DIRECTIONS, outward_tilt};
-use crate::contact::frame::ContactFrame;
+use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_DIRECTIONS};
+use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold::MAX_CONTACTS;
 use crate::contact::tuning::MAX_LEAN;
 use crate::geometry::fixed_vec::FixedVec;
@@ -89,7 +89,7 @@ fn confirming_samples(
         let tilt = match n {
             1 => THREE_DIRECTIONS[i % 3] * tilt_tan,
             2 if i > 1 => offset(last, corner).normalize() * tilt_tan,
-            _ => outward_tilt(last, corner, tilt_tan, MAX_LEAN * tilt_tan),
+            _ => outwards(last, corner, 1.0 / tilt_tan, MAX_LEAN) * tilt_tan,
         };
         FaceSample::new(tilt, *corner)
     };

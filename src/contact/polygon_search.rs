@@ -10,6 +10,7 @@
 
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, KnownPair, four_directions, is_within};
+use crate::contact::frame::outwards;
 use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL, MIN_COVER, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
@@ -117,9 +118,13 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         step: usize,
         least_side: f64,
     ) -> Option<(usize, Vec2)> {
+        let out_of = |side: usize| {
+            let [p, q] = polygon.side(side);
+            Some((side, outwards(p, q, self.depth_over_tilt, 0.0)))
+        };
         match (polygon.len, step) {
             (1, 0..4) => Some((0, four_directions(Vec2::x())[step])),
-            (2, 0..2) => Some((step, self.outwards(polygon.side(step)))),
+            (2, 0..2) => out_of(step),
             (2, 2..4) => {
                 let [p, q] = polygon.side(step - 2);
                 let along = offset(p, q);
@@ -128,20 +133,9 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             (0..3 | MAX_CORNERS, _) => None,
             _ => {
                 let side = polygon.longest_open_side(least_side * least_side)?;
-                Some((side, self.outwards(polygon.side(side))))
+                out_of(side)
             }
         }
-    }
-
-    /// Returns the unit direction out of a side along which both of its ends have the same height.
-    #[inline(always)]
-    fn outwards(&self, [p, q]: [&Vec3; 2]) -> Vec2 {
-        let side = offset(p, q);
-        let per_length = 1.0 / side.norm();
-        let along = side * per_length;
-        let lean = (q.z - p.z) * self.depth_over_tilt * per_length;
-        let lean = lesser(larger(lean, -1.0), 1.0);
-        Vec2::new(along.y, -along.x) * (1.0 - lean * lean).sqrt() + along * lean
     }
 
     /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices, and no known vertex is
