@@ -11,6 +11,11 @@
 //! | [`center_of_pressure`] | the contact position |
 //! | [`face`] | the face of an object in a contact |
 //! | [`manifold`], [`manifold_cache`] | the contact points of two faces, and what is kept of them |
+//!
+//! [`face`] and [`feature`] find corners at different tilts: a face has a largest drop, the slop, to which its tilt is
+//! proportional; the position weights by the drop, and reaches the drop of a curved surface, R T²/2, at a tilt proportional
+//! to the root of the depth. Measured with the other's tilt: positions jump by 74 mm (1 mm), and 1,189 of 370,224 checks of
+//! contacts fail (0).
 
 pub mod center_of_pressure;
 pub mod curved;

@@ -20,7 +20,8 @@ use core::f64::consts::FRAC_1_SQRT_2 as H;
 
 impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: a
-    /// query returns a known vertex, or four points are in a plane with the deepest one and not of a disc.
+    /// query returns a known vertex, or four points are in a plane with the deepest one and not of a disc; `extremes` then
+    /// has the queried vertices too.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -106,7 +107,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         Ok(true)
     }
 
-    /// Returns whether a search returned one of two vertices before.
+    /// Returns whether one of two queried vertices was known before, or found by the polygon search, which gave up.
     #[inline(always)]
     fn is_known(&self, object: usize, extremes: &[Vec3; 4], queried: [&Vec3; 2]) -> bool {
         let same = self.same_distance();

@@ -23,7 +23,7 @@ const MAX_STEPS: usize = 2 * MAX_CORNERS + 4;
 impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     /// Finds the polygon of a polytope and makes its fan. Returns false if `may_fail` and the first two queries return
     /// new vertices: two directions in a plane with a disc's axis return the same rim point, so a vertex returned twice
-    /// does not prove a polytope.
+    /// does not prove a polytope. `extremes` then has the corners found too.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
