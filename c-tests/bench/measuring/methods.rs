@@ -38,22 +38,11 @@ pub enum Interface {
     PeerInside,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Mark {
-    Dot,
-    Ring,
-    Triangle,
-    Cross,
-}
-
 /// A row of the table of methods.
 pub struct Entry {
     /// In tables and pictures; the first word that begins with ccd is the function of a library's call.
     pub name: &'static str,
     pub interface: Interface,
-    /// Red, green, blue.
-    pub colour: (u8, u8, u8),
-    pub mark: Mark,
 }
 
 impl Entry {
@@ -67,44 +56,34 @@ impl Entry {
     }
 }
 
-const fn entry(name: &'static str, interface: Interface, colour: (u8, u8, u8), mark: Mark) -> Entry {
-    Entry { name, interface, colour, mark }
+const fn entry(name: &'static str, interface: Interface) -> Entry {
+    Entry { name, interface }
 }
-
-const RED: (u8, u8, u8) = (239, 68, 68);
-const DARK_RED: (u8, u8, u8) = (153, 27, 27);
-const BLUE: (u8, u8, u8) = (37, 99, 235);
-const AMBER: (u8, u8, u8) = (217, 119, 6);
-const GREEN: (u8, u8, u8) = (22, 145, 70);
-const PURPLE: (u8, u8, u8) = (147, 51, 234);
-const PINK: (u8, u8, u8) = (219, 39, 119);
-const TEAL: (u8, u8, u8) = (13, 148, 136);
-const GREY: (u8, u8, u8) = (107, 114, 128);
 
 /// Every method.
 const METHODS: [Entry; 22] = [
-    entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }, RED, Mark::Triangle),
-    entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }, DARK_RED, Mark::Dot),
-    entry("libccd ccdMPRIntersect", Interface::YesNo, RED, Mark::Cross),
-    entry("ccdMPRPenetration", Interface::Depth { has_pos: false }, BLUE, Mark::Triangle),
-    entry("ccdMPRPenetration, pos", Interface::Depth { has_pos: true }, BLUE, Mark::Triangle),
-    entry("ccdGJKPenetration", Interface::Depth { has_pos: false }, BLUE, Mark::Dot),
-    entry("ccdMPRPenetrationWarm", Interface::DepthWarm, BLUE, Mark::Triangle),
-    entry("ccdIntersect", Interface::YesNoWarm, BLUE, Mark::Cross),
-    entry("ccdSignedDistance", Interface::Distance, BLUE, Mark::Cross),
-    entry("ccdPenetration", Interface::Full, BLUE, Mark::Ring),
-    entry("ccdPenetrationLocal", Interface::Full, AMBER, Mark::Dot),
-    entry("ccdPenetrationProven", Interface::Full, GREEN, Mark::Dot),
-    entry("Gao 2023, Algorithm 4/5", Interface::Gao(Until::Shortcut), PURPLE, Mark::Dot),
-    entry("Gao 2023, Algorithm 3", Interface::Gao(Until::Normal), PURPLE, Mark::Cross),
-    entry("ccdPenetrationLocal, climbing", Interface::Peer, AMBER, Mark::Triangle),
-    entry("DEEP", Interface::Peer, PINK, Mark::Triangle),
-    entry("Bullet EPA", Interface::Peer, GREY, Mark::Dot),
-    entry("FCL EPA", Interface::Peer, GREY, Mark::Ring),
-    entry("parry EPA", Interface::PeerInside, GREY, Mark::Triangle),
-    entry("MuJoCo 3 ccd", Interface::Peer, TEAL, Mark::Dot),
-    entry("Coal 3 EPA", Interface::Peer, TEAL, Mark::Ring),
-    entry("Jolt 5 EPA", Interface::Peer, TEAL, Mark::Cross),
+    entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }),
+    entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }),
+    entry("libccd ccdMPRIntersect", Interface::YesNo),
+    entry("ccdMPRPenetration", Interface::Depth { has_pos: false }),
+    entry("ccdMPRPenetration, pos", Interface::Depth { has_pos: true }),
+    entry("ccdGJKPenetration", Interface::Depth { has_pos: false }),
+    entry("ccdMPRPenetrationWarm", Interface::DepthWarm),
+    entry("ccdIntersect", Interface::YesNoWarm),
+    entry("ccdSignedDistance", Interface::Distance),
+    entry("ccdPenetration", Interface::Full),
+    entry("ccdPenetrationLocal", Interface::Full),
+    entry("ccdPenetrationProven", Interface::Full),
+    entry("Gao 2023, Algorithm 4/5", Interface::Gao(Until::Shortcut)),
+    entry("Gao 2023, Algorithm 3", Interface::Gao(Until::Normal)),
+    entry("ccdPenetrationLocal, climbing", Interface::Peer),
+    entry("DEEP", Interface::Peer),
+    entry("Bullet EPA", Interface::Peer),
+    entry("FCL EPA", Interface::Peer),
+    entry("parry EPA", Interface::PeerInside),
+    entry("MuJoCo 3 ccd", Interface::Peer),
+    entry("Coal 3 EPA", Interface::Peer),
+    entry("Jolt 5 EPA", Interface::Peer),
 ];
 
 /// Start of a search; in files the degrees by which a guess is off the true direction, `cold` or `warm`.

@@ -9,7 +9,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::measuring::measure::Row;
-use crate::measuring::methods::{Entry, Mark, Start};
+use crate::measuring::methods::Start;
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -32,21 +32,64 @@ pub struct Panel<'a> {
     pub limit: Option<f64>,
 }
 
+/// Marks of the points of a curve.
+#[derive(Clone, Copy)]
+enum Mark {
+    Dot,
+    Ring,
+    Triangle,
+    Cross,
+}
+
+const RED: RGBColor = RGBColor(239, 68, 68);
+const DARK_RED: RGBColor = RGBColor(153, 27, 27);
+const BLUE: RGBColor = RGBColor(37, 99, 235);
+const AMBER: RGBColor = RGBColor(217, 119, 6);
+const GREEN: RGBColor = RGBColor(22, 145, 70);
+const PURPLE: RGBColor = RGBColor(147, 51, 234);
+const PINK: RGBColor = RGBColor(219, 39, 119);
+const TEAL: RGBColor = RGBColor(13, 148, 136);
+const GREY: RGBColor = RGBColor(107, 114, 128);
+
+/// Colour and mark of each method that is drawn.
+const STYLES: [(&str, RGBColor, Mark); 15] = [
+    ("libccd ccdMPRPenetration", RED, Mark::Triangle),
+    ("libccd ccdGJKPenetration", DARK_RED, Mark::Dot),
+    ("ccdMPRPenetration", BLUE, Mark::Triangle),
+    ("ccdPenetrationLocal", AMBER, Mark::Dot),
+    ("ccdPenetrationProven", GREEN, Mark::Dot),
+    ("Gao 2023, Algorithm 4/5", PURPLE, Mark::Dot),
+    ("Gao 2023, Algorithm 3", PURPLE, Mark::Cross),
+    ("ccdPenetrationLocal, climbing", AMBER, Mark::Triangle),
+    ("DEEP", PINK, Mark::Triangle),
+    ("Bullet EPA", GREY, Mark::Dot),
+    ("FCL EPA", GREY, Mark::Ring),
+    ("parry EPA", GREY, Mark::Triangle),
+    ("MuJoCo 3 ccd", TEAL, Mark::Dot),
+    ("Coal 3 EPA", TEAL, Mark::Ring),
+    ("Jolt 5 EPA", TEAL, Mark::Cross),
+];
+
+/// Returns colour and mark of a row's curve.
+fn style(row: &Row) -> (RGBColor, Mark) {
+    let style = STYLES.iter().find(|style| style.0 == row.method);
+    style.map_or((BLACK, Mark::Dot), |&(_, colour, mark)| (colour, mark))
+}
+
 /// Returns the line of a row's curve.
 fn line(row: &Row) -> ShapeStyle {
-    let Entry { colour: (r, g, b), .. } = Entry::find(&row.method);
     let share = if row.start == Start::Guess45 { 0.5 } else { 1.0 };
-    RGBColor(*r, *g, *b).mix(share).stroke_width(if row.ours { 3 } else { 1 })
+    style(row).0.mix(share).stroke_width(if row.ours { 3 } else { 1 })
 }
 
 /// Returns the mark of a row's curve, around a point of a chart or of the page.
 fn mark<'b>(row: &Row) -> DynElement<'static, SVGBackend<'b>, (i32, i32)> {
-    let style = line(row);
-    match Entry::find(&row.method).mark {
-        Mark::Dot => Circle::new((0, 0), 3, style.filled()).into_dyn(),
-        Mark::Ring => Circle::new((0, 0), 4, style).into_dyn(),
-        Mark::Triangle => TriangleMarker::new((0, 0), 5, style.filled()).into_dyn(),
-        Mark::Cross => Cross::new((0, 0), 4, style).into_dyn(),
+    let line = line(row);
+    match style(row).1 {
+        Mark::Dot => Circle::new((0, 0), 3, line.filled()).into_dyn(),
+        Mark::Ring => Circle::new((0, 0), 4, line).into_dyn(),
+        Mark::Triangle => TriangleMarker::new((0, 0), 5, line.filled()).into_dyn(),
+        Mark::Cross => Cross::new((0, 0), 4, line).into_dyn(),
     }
 }
 
