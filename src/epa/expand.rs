@@ -38,6 +38,11 @@ use crate::types::{Settings, Status};
 /// above it.
 const EXACT_PLANES_REL: f64 = 1e-11;
 
+/// The number of remaining support calls for which one corner less is reserved in the largest buffers, so that more known
+/// differences are inserted before. Measured: without it 4 % more support points for deep hulls, 1 to 3 % for ellipsoids;
+/// with 8, 4 in 4,000 nearly concentric spheres and capsules more end at the support limit.
+const CALLS_PER_SPARE_CORNER: usize = 16;
+
 /// The limits of a query.
 #[derive(Clone, Copy, Debug)]
 pub struct EpaLimits {
@@ -130,7 +135,9 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let is_gain =
             !(closest.key > 0.0) || height * distance > LARGE_PART * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
-        let has_room = has_larger || surface.corners.room() > N - set.len();
+        let remaining = N - set.len();
+        let reserved = remaining - remaining / CALLS_PER_SPARE_CORNER;
+        let has_room = has_larger || surface.corners.room() > reserved;
         if !(height > level && is_gain && has_room) {
             let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
             let vertices = |set: &VertexSet<N>| surface.face(set, interior, face);
