@@ -43,7 +43,7 @@ use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::SMALL_PART;
+use crate::minkowski::tuning::{MIN_CENTRAL_REL, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{discover, refine};
@@ -274,7 +274,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     /// to the origin, which the polytope would soon enclose, the support point opposite to the upper bound.
     fn find_apex(&mut self, set: &mut VertexSet<SMALL_VERTICES>) -> Result<Vertex, Stop> {
         let SupportPlane { dir, depth, .. } = self.query.upper;
-        let is_central = -dir.dot(&self.interior.v) < SMALL_PART * depth;
+        let offset = -dir.dot(&self.interior.v);
+        let is_central = offset > MIN_CENTRAL_REL * depth && offset < SMALL_PART * depth;
         if is_central && self.request.center.is_some() && !set.is_full() {
             return Ok(self.query.evaluate(set, &-dir)?.vertex());
         }

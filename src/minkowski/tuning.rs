@@ -76,6 +76,13 @@ pub const MIN_CHORD_FRACTION: f64 = 0.25;
 /// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided.
 pub const GENERIC_FRACTION: f64 = 0.44;
 
+// The polytope.
+
+/// The distance of the center from the origin along the direction of the upper bound, in upper bounds, up to which the
+/// center is a corner of the polytope all the same: in a symmetric D the origin is then on the edge between the two
+/// opposite support points.
+pub const MIN_CENTRAL_REL: f64 = 0.01;
+
 // The local search.
 
 /// The tilt of the directions that confirm a minimum, radians: no support value at this angle may be lower. A face
