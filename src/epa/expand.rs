@@ -93,6 +93,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     trace::stage("expansion");
     // The key of the closest face when a fit's direction found nothing above it.
     let mut last_failed_key = -1.0;
+    // The normal of the face above which the last point was inserted.
+    let mut last_normal = Vec3::zeros();
     // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
     loop {
         let polytope = &mut surface.polytope;
@@ -157,6 +159,12 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             }
             // Otherwise the callbacks returned less than a known difference, in contradiction: insert that.
         }
+        // A face of no area has the plane of the visible face that it replaced, and its corner is above that: without an end
+        // the same point would be inserted again.
+        if normal == last_normal {
+            return Ok(Some(Status::Rounding));
+        }
+        last_normal = normal;
         let EpaSurface { corners, polytope } = &mut *surface;
         let id = corners.push(w.pair);
         let corner = |id| corners.vertex(set, interior, id).w;

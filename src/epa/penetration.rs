@@ -553,7 +553,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::epa::buffers::MAX_PROVEN_POINTS;
+    use crate::epa::buffers::{MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference};
     use crate::shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
@@ -802,5 +802,30 @@ mod tests {
             }
         }
         assert!(found > 10, "{found}");
+    }
+
+    /// Flat cones around a ball at their center: the tetrahedron of the first start has the origin on a face or an edge, and
+    /// a face of no area must not take the same point until the limit. The depth is that of the side.
+    #[test]
+    fn a_face_without_area_does_not_take_a_point_twice() {
+        let mut r = Random::new(43);
+        for _ in 0..4000 {
+            let (turn, radius, height) = (r.rotation(), r.within(0.4, 0.8), r.within(0.1, 0.2));
+            let ball_radius = r.within(0.2, 0.5);
+            // Centered on its axis, with the apex above.
+            let cone = move |d: &Vec3| {
+                let local = turn.inverse() * d;
+                let across = Vec3::new(local.x, local.y, 0.0);
+                let rim = across * (radius / across.norm().max(1e-300)) - Vec3::z() * height;
+                let apex = Vec3::z() * height;
+                let is_apex = apex.dot(&local) > rim.dot(&local);
+                turn * if is_apex { apex } else { rim }
+            };
+            let offset = r.direction() * 10f64.powf(r.within(-18.0, -8.0));
+            let md = difference(cone, ball(offset, ball_radius));
+            let hit = run(&md, Some(&center(-offset)), MAX_DEFAULT_POINTS, None).unwrap();
+            let side = radius * height / radius.hypot(2.0 * height);
+            assert!(hit.depth <= 1.01 * (side + ball_radius), "{hit:?}");
+        }
     }
 }
