@@ -48,7 +48,7 @@ use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
     CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, LARGE_PART, MAX_FAILED_PREDICTIONS,
-    MIN_LENGTH_REL, SAME_VALLEY_COS, SMALL_PART, SPHERE_TILT_RAD,
+    MAX_TILT_TAN, SAME_VALLEY_COS, SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -243,10 +243,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let tolerance = self.tolerance();
             let first = self.set.farthest_vertex(&ray);
             // The approximate length of the ray in D from the interior point.
-            let length = larger(
-                (first.w - self.interior).dot(&ray),
-                MIN_LENGTH_REL * self.query.scale.size(),
-            );
+            let length = (first.w - self.interior).dot(&ray);
             // The ring's tilt is half of that of the directions that confirm a minimum.
             let ring_tilt = Some(0.5 * CONFIRM_TILT_RAD);
             let portal = discover(self.query, self.set, &ray, length, tolerance, ring_tilt)?;
@@ -540,8 +537,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     ) -> Result<bool, Stop> {
         trace::stage("confirmation");
         let before = self.query.upper.depth;
-        let far =
-            center_tolerance.map_or(CONFIRM_TILT_RANGE * CONFIRM_TILT_RAD, |_| SPHERE_TILT_RAD);
+        let far = center_tolerance.map_or(CONFIRM_TILT_RANGE * CONFIRM_TILT_RAD, |_| MAX_TILT_TAN);
         let near = CONFIRM_TILT_RAD / CONFIRM_TILT_RANGE;
         let mut is_known = [false; 3];
         for k in 0..self.set.len() {

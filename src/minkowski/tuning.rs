@@ -19,9 +19,9 @@ pub const LARGE_PART: f64 = 0.75;
 
 // Models of D.
 
-/// The largest tangent of the angle over which D is extrapolated: from the normal of the best plane to a direction that
-/// GJK evaluates, and in a Newton step. Insensitive: 0.5 to 0.8; without a limit GJK takes 12 % more
-/// support points.
+/// The largest angle, tangent or radians, over which D is extrapolated: from the normal of the best plane to a direction
+/// that GJK evaluates, and from a direction of a sphere to one of the local search that confirms it. Insensitive: 0.5 to
+/// 0.8; without a limit GJK takes 12 % more support points.
 pub const MAX_TILT_TAN: f64 = 0.6;
 
 /// The number of support points before fits are made. Measured: without it 3 % more instructions for recorded hits,
@@ -90,22 +90,15 @@ pub const MIN_CENTRAL_REL: f64 = 0.01;
 pub const CONFIRM_TILT_RAD: f64 = 0.015;
 /// The largest factor between [`CONFIRM_TILT_RAD`] and the angle of a known direction that confirms a minimum in its place.
 pub const CONFIRM_TILT_RANGE: f64 = 2.5;
-/// The largest angle of such a direction for spheres, radians: their support values are known at any angle.
-pub const SPHERE_TILT_RAD: f64 = 0.6;
 /// The least cosine between such a direction and the tilted one, seen along the direction of the minimum.
 pub const CONFIRM_NEAR_COS: f64 = 0.6;
 /// The least cosine between a face's normal and the direction of the upper bound at which they count as in the same
 /// valley: 11 degrees. Measured on hulls, started 5 degrees from a minimum: with 0.9 2.2 % of the pairs end in another
 /// minimum, with 0.98 1.0 %.
 pub const SAME_VALLEY_COS: f64 = 0.98;
-/// The least length of the ray in D that is assumed in portal discovery, in sizes.
-pub const MIN_LENGTH_REL: f64 = 0.1;
 
 // Newton's step.
 
-/// The least squared sine between the changes of direction of the two entries.
-pub const MIN_NEWTON_WIDTH2: f64 = 0.1;
-/// The least determinant of a Hessian with a minimum, in products of its diagonal.
-pub const MIN_DETERMINANT_REL: f64 = 0.01;
-/// The largest relative difference of e and f at which D counts as smooth between two entries.
+/// The largest relative difference of e and f at which D counts as smooth between two entries; and the least squared sine
+/// between the changes of direction of the two entries.
 pub const SMOOTH_REL_TOL: f64 = 0.1;
