@@ -30,7 +30,7 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::tuning::{
-    MAX_TILTS, SHALLOW_REL, SMALL_PART, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
+    MAX_FAILURES, SMALL_PART, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
@@ -43,7 +43,7 @@ pub const MAX_STEPS: u32 = 100;
 #[inline(always)]
 pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
     let upper = query.upper.depth;
-    upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
+    upper * upper < SMALL_PART * SMALL_PART * query.scale.size2()
 }
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
@@ -81,7 +81,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
                 let way = normalise_unscaled(&(towards_ray - ray * ray.dot(&towards_ray)));
                 (towards_ray, height) = (way.unwrap_or_else(|| perpendicular(ray)), 0.0);
                 // A tilt would be too small to find another point.
-                failures = MAX_TILTS;
+                failures = MAX_FAILURES;
             }
         }
     }
@@ -107,7 +107,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
             let sample = query.evaluate(set, &n)?;
             let sample_height = towards_ray.dot(&sample.w);
             if !(sample_height > 0.0) {
-                if failures >= MAX_TILTS {
+                if failures >= MAX_FAILURES {
                     return Ok(None);
                 }
                 failures += 1;
@@ -147,7 +147,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns the next direction of the discovery, of any length: that of the upper bound, tilted towards
-/// `perpendicular`; or `perpendicular` itself after [`MAX_TILTS`] failures. `height`: dot product of the corners with
+/// `perpendicular`; or `perpendicular` itself after [`MAX_FAILURES`] failures. `height`: dot product of the corners with
 /// `perpendicular`, m². `edge`: distance of the two corners, 0 for one corner, metres. `length`: approximate length of
 /// the ray in D, metres.
 #[inline(always)]
@@ -163,7 +163,7 @@ fn discovery_dir(
     // The distance of the corners from the ray.
     let off = -height / norm;
     let mut tilt = f64::INFINITY;
-    if failures < MAX_TILTS {
+    if failures < MAX_FAILURES {
         let widest = (TILT_WIDTH_OFF * off).max(TILT_WIDTH_EDGE * edge) / length;
         tilt = lesser(TILT_GROWTH * upper.depth / off, widest);
         for _ in 0..failures {

@@ -20,12 +20,12 @@
 //! of the two points. `is_inside`: the origin is in the simplex, and the points coincide.
 
 use crate::gjk::intersect::{CAPACITY, Enclosing};
-use crate::gjk::simplex::{MAX_STALLS, Simplex, compact};
+use crate::gjk::simplex::{Simplex, compact};
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{MAX_TILT_TAN, SMALL_PART};
+use crate::minkowski::tuning::{MAX_FAILURES, MAX_TILT_TAN, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
@@ -160,7 +160,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
                 }
                 closest = self.upper;
             }
-            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
+            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_FAILURES) else {
                 return Ok(Status::Rounding);
             };
             is_step = !self.query_prediction(&dir, self.gap(goal))?;

@@ -26,12 +26,12 @@
 //! undecided, objects that were turned and whose D has the origin on an edge.
 
 use crate::geometry::barycentric;
-use crate::gjk::simplex::{MAX_STALLS, Simplex, compact, make_room};
+use crate::gjk::simplex::{Simplex, compact, make_room};
 use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
-use crate::minkowski::tuning::{GENERIC_FRACTION, MIN_CHORD_FRACTION};
+use crate::minkowski::tuning::{GENERIC_FRACTION, MAX_FAILURES, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
 use crate::trace;
@@ -138,7 +138,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns a point of D, in its interior or on its surface: on the segment from `from` to the support point along
-/// unit `dir`, as close to the origin as [`MIN_CHORD_FRACTION`] allows. Queries `dir`, and the direction from the
+/// unit `dir`, as close to the origin as [`SMALL_PART`] allows. Queries `dir`, and the direction from the
 /// point to the origin.
 #[inline(never)]
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
@@ -151,8 +151,8 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     let far = query.evaluate(set, dir)?;
     let far = set.point(far.pair);
     let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
-    let max = 1.0 - MIN_CHORD_FRACTION;
-    let t = lesser(larger(closest, MIN_CHORD_FRACTION), max);
+    let max = 1.0 - SMALL_PART;
+    let t = lesser(larger(closest, SMALL_PART), max);
     let mut inner = from.towards(&far, t);
     if !(inner.v.norm() > query.scale.contact_eps()) {
         inner = inner.towards(&far, 0.5);
@@ -297,7 +297,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         // Negated for NaN.
         if !(distance2 > eps2 && distance2 < closest2) {
             stalls += 1;
-            if stalls > MAX_STALLS {
+            if stalls > MAX_FAILURES {
                 break;
             }
         }

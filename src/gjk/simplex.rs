@@ -24,10 +24,6 @@ use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
-/// Number of steps without progress towards the origin after which the search stops. One such step is normal
-/// if the origin lies on a face: it finds the other side of that face.
-pub const MAX_STALLS: u32 = 3;
-
 /// A simplex of points of D: at most three corners, and a slot for the next point.
 ///
 /// A corner keeps its slot: only the order changes.

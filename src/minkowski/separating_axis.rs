@@ -8,7 +8,7 @@
 //! 2. If it is less than the target separation, rotate n by one subgradient step with Polyak's step length
 //!    (B. Polyak, "Minimization of Unsmooth Functionals", 1969): n − g (h(n) + target) / g², where g, the
 //!    part of s perpendicular to n, is the gradient of h.
-//! 3. If n did not separate, repeat with the rotated axis, [`MAX_TRIES`] axes in all.
+//! 3. If n did not separate, repeat with the rotated axis, [`MAX_FAILURES`] axes in all.
 //!
 //! So a pair whose axis rotates slowly takes one support point per query. Without the rotation, pairs that
 //! stay separated and turn by 0.1° per frame take 1.29 support points per query (test U14 of
@@ -21,7 +21,7 @@
 use crate::math::{Vec3, larger, unit};
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{MAX_TRIES, MIN_TARGET_REL, TARGET_DECAY};
+use crate::minkowski::tuning::{MAX_FAILURES, MIN_TARGET_REL, TARGET_DECAY};
 use crate::trace;
 
 /// An axis that separated the objects.
@@ -45,7 +45,7 @@ impl SeparatingAxis {
         query: &mut SupportQuery<'_, A, B>,
     ) -> Result<Option<Vec3>, Fault> {
         trace::stage("separating axis");
-        for _ in 0..MAX_TRIES {
+        for _ in 0..MAX_FAILURES {
             let n = self.dir;
             let point = query.evaluate_point(&n)?;
             let separation = -n.dot(&point.v);

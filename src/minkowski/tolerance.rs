@@ -18,7 +18,7 @@ use crate::minkowski::tuning::SMALL_PART;
 /// The relative tolerance of a default query: the largest gap between the bounds, as a fraction of the depth.
 pub const GAP_REL: f64 = 1e-3;
 /// The largest effective tolerance, as a fraction of the size of D.
-const MAX_TOLERANCE_REL: f64 = 2.5e-4;
+const MAX_TOLERANCE_REL: f64 = SMALL_PART * GAP_REL;
 
 /// The error of a triple product of points or edges of D, in ulps of the product of their lengths. Derived: 8
 /// for the products and their sums. In double precision more is allowed, because support functions are less exact.

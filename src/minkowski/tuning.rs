@@ -5,17 +5,30 @@
 
 // Tolerances.
 
-/// The part of a tolerance, gap or depth that counts as small: a known difference that is this high above a plane replaces
-/// a support call, a prediction that gains less is not evaluated, one that misses its gain by less agrees, and a center
-/// closer to the origin than this part of the upper bound is no corner of the polytope. Measured: 0.2 to 0.5 differ by
-/// 1.5 %; evaluating every prediction costs 7 % of the support points of proofs; a central corner 4 % of the instructions
-/// of deep boxes and capsules.
+/// The part that counts as small, of
+/// - an allowed gap: a known difference that is this high above a plane replaces a support call, a prediction that gains
+///   less is not evaluated, and one that misses its gain by less agrees. Measured: 0.2 to 0.5 differ by 1.5 %; evaluating
+///   every prediction costs 7 % of the support points of proofs;
+/// - the size: an upper bound below it is that of a *shallow* contact, whose portal is near the minimum and is refined
+///   after the origin is on its inner side. Measured: without refinement deep overlaps take 4 to 13 % fewer instructions;
+///   with 0.15 boxes at medium depth take 11 % more, and spheres 8 % more support points;
+/// - the upper bound: a center closer to the origin is no corner of the polytope. Measured: 0.2 to 0.5 are equal, and
+///   without it deep boxes and capsules take 4 % more instructions;
+/// - a segment: an interior point is that far from its ends. Measured: with 0.05 separated pairs take 7 % more support
+///   points, with 0.5 10 %;
+/// - a tolerance: the increase of the support value that the tilt into general position may cause.
 pub const SMALL_PART: f64 = 0.25;
 /// The part that counts as most of it: a known difference that closes this much of the gap between the closest face and
 /// the upper bound is inserted into the polytope without a support call, and two depths of a local search that differ by
 /// less than this part of the tolerance are equal. The rest is for the error of the witness points. Insensitive: 0.45 to
 /// 0.8; without it deep boxes take 50 % more instructions.
 pub const LARGE_PART: f64 = 0.75;
+
+/// The number of attempts that may fail before another way is taken: predictions of a model of D, axes of the last query,
+/// tilts of portal discovery, and steps of GJK that come no closer. Insensitive: 2 to 5; without a limit some local searches
+/// take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends at the support
+/// limit.
+pub const MAX_FAILURES: u32 = 3;
 
 // Models of D.
 
@@ -27,18 +40,12 @@ pub const MAX_TILT_TAN: f64 = 0.6;
 /// The number of support points before fits are made. Measured: without it 3 % more instructions for recorded hits,
 /// and as many support points.
 pub const MIN_SAMPLES: usize = 4;
-/// The number of failed predictions of a model after which it is not used any more. Without a limit some local
-/// searches take 60 support points more, and a proof of category AXIS of c-tests/tests/stability/categories.h ends
-/// at the support limit.
-pub const MAX_FAILED_PREDICTIONS: u32 = 5;
 /// The largest ratio of the widths of two rings. Measured: without it 11 % more support points in proofs to 1e-10 m
 /// of shallow round pairs.
 pub const MAX_RING_RATIO: f64 = 100.0;
 
 // The separating axis.
 
-/// Number of axes evaluated before the pair is queried as if it were new.
-pub const MAX_TRIES: u32 = 2;
 /// Decay of the target separation per query. Insensitive: 0.8 to 0.99, at most 0.3 % of the support points
 /// of recorded contacts.
 pub const TARGET_DECAY: f64 = 0.95;
@@ -58,20 +65,9 @@ pub const TILT_GROWTH: f64 = 1.4;
 pub const TILT_WIDTH_OFF: f64 = 2.75;
 /// The factor of the length of v1 v2 in the largest tilt, see [`TILT_WIDTH_OFF`].
 pub const TILT_WIDTH_EDGE: f64 = 0.75;
-/// The number of tilts that find no point on the other side of the ray before the perpendicular direction is
-/// evaluated.
-pub const MAX_TILTS: u32 = 3;
-/// The upper bound, in sizes, up to which a contact is shallow. The portal of a shallow contact is refined after the
-/// origin is on its inner side, because it is near the minimum; for deeper contacts the polytope is faster. Measured:
-/// without this limit deep overlaps take 4 to 13 % more instructions; with 0.15 boxes at medium depth take 11 % more,
-/// and spheres 8 % more support points.
-pub const SHALLOW_REL: f64 = 0.3;
 
 // GJK.
 
-/// Least distance of the interior point from the ends of its segment, relative to the segment's length.
-/// Measured on the recorded contacts: with 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
-pub const MIN_CHORD_FRACTION: f64 = 0.25;
 /// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
 /// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided.
 pub const GENERIC_FRACTION: f64 = 0.44;
