@@ -20,10 +20,10 @@
 //!
 //! Departures. The result is the support plane (n, h(n)) with the least support value, not the ray: it is sound, and
 //! takes no further support call. Tests are signs of triple products; none has an absolute epsilon. A support
-//! plane that excludes the origin ends the search: the objects are separated. The direction of a ray through its own
-//! support point is stationary, but may be a maximum or a saddle: the search perturbs it once and continues. If an
-//! earlier support plane is lower than the last one, in another valley (see [`crate::local`]), the search
-//! continues there.
+//! plane that excludes the origin, or passes through it within the contact epsilon, ends the search: the objects are
+//! separated. The direction of a ray through its own support point is stationary, but may be a maximum or a saddle: the
+//! search perturbs it once and continues. If an earlier support plane is lower than the last one, in another valley (see
+//! [`crate::local`]), the search continues there.
 //!
 //! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `status`: not
 //! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
@@ -33,6 +33,7 @@ use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
+use crate::minkowski::tolerance::Scale;
 use crate::types::{Penetration, Settings, Status};
 
 /// The perturbation of a stationary direction, as tangents along two perpendicular vectors: 6 degrees in all, small
@@ -164,6 +165,16 @@ fn support_plane<A: SupportMap, B: SupportMap>(
     let point = md.support(&dir)?;
     let depth = dir.dot(&point.v);
     Ok(SupportPlane { dir, depth, point })
+}
+
+/// Returns whether a support plane separates the objects, or they touch it within the contact epsilon of its own point.
+/// ([`Pair::prove_overlap`](crate::query::Pair::prove_overlap) tests that of the witness points only, which can be much
+/// closer to the world's origin.)
+#[inline]
+fn is_separating(plane: &SupportPlane) -> bool {
+    let mut scale = Scale::default();
+    scale.note(&plane.point);
+    !scale.is_depth(plane.depth)
 }
 
 /// A portal: three support points whose triangle the ray crosses.
@@ -303,14 +314,14 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// Evaluates the support plane with the unit normal `n`.
     ///
     /// # Errors
-    /// [`Stop::Separated`] for a negative support value; [`Stop::Fault`] for a point that is not finite.
+    /// [`Stop::Separated`] for a separating plane; [`Stop::Fault`] for a point that is not finite.
     #[inline]
     fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
         let plane = support_plane(self.md, n)?;
         if plane.depth < self.best.depth {
             self.best = plane;
         }
-        if plane.depth < 0.0 {
+        if is_separating(&plane) {
             return Err(Stop::Separated(n));
         }
         Ok(plane)
@@ -334,7 +345,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// portal's size, takes the place of the interior point.
     fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
         let d = first.dir;
-        if first.depth < 0.0 {
+        if is_separating(first) {
             return Err(Stop::Separated(d));
         }
         let size = first.point.magnitude();
@@ -382,7 +393,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         first: &SupportPlane,
         m: &Vec3,
     ) -> Result<Result<Portal, RayEnd>, Stop> {
-        if first.depth < 0.0 {
+        if is_separating(first) {
             return Err(Stop::Separated(first.dir));
         }
         let side = unit(&m.cross(&first.dir)).unwrap_or_else(|| perpendicular(m));

@@ -23,6 +23,25 @@ mod search {
         hit
     }
 
+    /// Tests flat ellipses in a common plane, which only touch though they overlap in it: the support value of the normal
+    /// of the plane is rounding, and separates.
+    #[test]
+    fn flat_bodies_are_separated() {
+        let mut r = Random::new(10);
+        for _ in 0..1000 {
+            let turn = r.rotation();
+            let mut flat = || {
+                // Not 0, so that the support point along the normal of the plane is defined.
+                let radii = Vec3::new(r.within(0.3, 1.0), r.within(0.3, 1.0), 1e-20);
+                let at = Vec3::new(r.within(-0.2, 0.2), r.within(-0.2, 0.2), 0.0);
+                ellipsoid(radii, turn, turn * at)
+            };
+            let md = difference(flat(), flat());
+            let found = penetration(&md, Vec3::x(), None, Until::Shortcut, &SETTINGS, |_| ());
+            assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
+        }
+    }
+
     /// An ellipsoid with semi-axes `radii` about `center`, as a level set
     /// g(v) = Σ ((v − center)ᵢ / radiiᵢ)² − 1, so that planes and rays are at hand.
     struct Explicit {
