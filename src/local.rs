@@ -36,11 +36,13 @@
 //! objects overlap, which is not proven: use the global query. [`Status::InconsistentSupport`]: also if a center is
 //! outside its object.
 
+mod face;
 mod newton;
 
 use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
+use crate::local::face::Face;
 use crate::local::newton::newton_step;
 use crate::math::{Vec3, larger, lesser, normal, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
@@ -60,71 +62,6 @@ use crate::types::{Penetration, Settings, Status};
 pub const MAX_WALK_POINTS: usize = 60;
 /// Half of the square of the angle, radians, below which two directions count as the same.
 const SAME_DIR_EPS: f64 = 1e-13;
-
-/// A face of the inner model: the last portal of a ray.
-#[derive(Clone, Copy)]
-struct Face {
-    corners: [Vertex; 3],
-    /// Unit, outward.
-    normal: Vec3,
-    /// The distance of its plane from the origin, metres.
-    offset: f64,
-}
-
-impl Face {
-    /// Returns the face of three corners; `None` if they lie on a line.
-    fn new(corners: &[Vertex; 3]) -> Option<Self> {
-        let [a, b, c] = corners.each_ref().map(|v| v.w);
-        let normal = normalise_unscaled(&(b - a).cross(&(c - a)))?;
-        Some(Self {
-            corners: *corners,
-            normal,
-            offset: normal.dot(&a),
-        })
-    }
-
-    /// Returns whether the foot is in the face, or at most `eps`, metres, outside.
-    fn has_foot(&self, eps: f64) -> bool {
-        (0..3).all(|i| {
-            let (side, length2) = self.side(i);
-            side >= 0.0 || side * side <= eps * eps * length2
-        })
-    }
-
-    /// Returns the distance of the foot from the closest edge, metres; negative outside the face.
-    fn foot_depth(&self) -> f64 {
-        (0..3).fold(f64::INFINITY, |least, i| {
-            let (side, length2) = self.side(i);
-            lesser(side / length2.sqrt(), least)
-        })
-    }
-
-    /// Returns the distance of the foot from the line of edge `i`, positive inside, times the length of the edge;
-    /// and the square of that length.
-    fn side(&self, i: usize) -> (f64, f64) {
-        let edge = self.edge(i);
-        // The foot is on the normal.
-        let side = -self.normal.dot(&edge.cross(&self.corners[i].w));
-        (side, edge.norm_squared())
-    }
-
-    fn edge(&self, i: usize) -> Vec3 {
-        self.corners[(i + 1) % 3].w - self.corners[i].w
-    }
-
-    /// Returns the unit vector in the face's plane perpendicular to its longest edge: the direction of descent if the
-    /// face is narrow and its foot is not the minimum.
-    fn perpendicular_to_longest_edge(&self) -> Vec3 {
-        let mut longest = self.edge(0);
-        for i in 1..3 {
-            if self.edge(i).norm_squared() > longest.norm_squared() {
-                longest = self.edge(i);
-            }
-        }
-        normalise_unscaled(&self.normal.cross(&longest))
-            .unwrap_or_else(|| perpendicular(&self.normal))
-    }
-}
 
 /// The next step of a walk.
 enum Step {
@@ -319,11 +256,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     return Ok(step);
                 }
                 let mut prediction = None;
+                let worthwhile = self.query.upper.depth - SMALL_PART * tolerance;
                 if !along_normal {
                     if self.failures < MAX_FAILURES {
                         prediction = self.predict(&face);
                     }
-                    if let Some(p) = prediction.filter(|p| !self.has_gain(p, tolerance)) {
+                    if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
                         if self.is_upper_bound(&p, tolerance) {
                             return Ok(Step::Fit(face, p.model));
                         }
@@ -346,7 +284,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let before = self.query.upper.depth;
                 let sample = self.evaluate(&prediction.map_or(face.normal, |p| p.dir))?;
                 if let Some(p) = &prediction {
-                    if sample.h < p.value + self.slack(p, before, tolerance) {
+                    let slack = SMALL_PART * larger(before - p.value, tolerance);
+                    if sample.h < p.value + slack {
                         let is_minimum = self.is_minimum(p, sample.h, tolerance);
                         return Ok(match is_minimum {
                             true => Step::Fit(face, p.model),
@@ -387,10 +326,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
-                lesser(
-                    (SMALL_PART * CONFIRM_TILT_RAD).powi(2),
-                    tolerance / upper.depth,
-                )
+                let small = SMALL_PART * CONFIRM_TILT_RAD;
+                lesser(small * small, tolerance / upper.depth)
             } else {
                 0.25 * cone * cone
             };
@@ -439,11 +376,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             || !(0..self.set.len()).any(|k| is_same(&self.set.dir(k), dir))
     }
 
-    /// Returns whether a prediction would lower the upper bound by enough for an evaluation.
-    fn has_gain(&self, prediction: &Prediction, tolerance: f64) -> bool {
-        prediction.value < self.query.upper.depth - SMALL_PART * tolerance
-    }
-
     /// Returns whether the upper bound is `value`, metres.
     fn equals_upper_bound(&self, value: f64, tolerance: f64) -> bool {
         (value - self.query.upper.depth).abs() <= LARGE_PART * tolerance
@@ -468,15 +400,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn vertices_coincide(&self, tolerance: f64) -> bool {
         let SupportPlane { depth, dir, point } = self.query.upper;
         (point.v - dir * depth).norm_squared() <= depth * tolerance
-    }
-
-    /// Returns by how much the support value may exceed a prediction that came true, metres. `before`: the upper bound
-    /// before the evaluation, metres.
-    fn slack(&self, prediction: &Prediction, before: f64, tolerance: f64) -> f64 {
-        larger(
-            SMALL_PART * (before - prediction.value),
-            SMALL_PART * tolerance,
-        )
     }
 
     /// Returns whether a prediction that came true with the support value `h`, metres, is a candidate.
@@ -640,8 +563,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             v2: Vec3::zeros(),
         };
         let center = self.is_centered.then_some(&center);
-        contains_origin(self.query, self.set, center, &face.normal, false)?;
-        Ok(())
+        contains_origin(self.query, self.set, center, &face.normal, false).map(|_| ())
     }
 }
 
