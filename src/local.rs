@@ -49,8 +49,8 @@ use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, LARGE_PART, MAX_FAILURES, MAX_TILT_TAN,
-    SAME_VALLEY_COS, SMALL_PART,
+    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, LARGE_PART, MAX_FAILED_PREDICTIONS,
+    MAX_TILT_TAN, SAME_VALLEY_COS, SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -258,7 +258,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let mut prediction = None;
                 let worthwhile = self.query.upper.depth - SMALL_PART * tolerance;
                 if !along_normal {
-                    if self.failures < MAX_FAILURES {
+                    if self.failures < MAX_FAILED_PREDICTIONS {
                         prediction = self.predict(&face);
                     }
                     if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {

@@ -15,7 +15,7 @@
 //!    outer side, the foot w predicts the least support value ρ − |w|, along −w / |w|; otherwise ρ + |w|, along
 //!    w / |w|.
 //! 3. *Confirmation.* A prediction that agrees with the evaluated support value confirms the fit; one that does
-//!    not resets the radii, and after [`MAX_FAILURES`] of them the fit is not used any more.
+//!    not resets the radii, and after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
 //! 4. *Tilted direction.* With a confirmed fit, the direction of the upper bound is tilted towards a face until the
 //!    chord of its support point and the new one is as close to the origin as the allowed gap permits.
 //!
@@ -26,7 +26,7 @@ use crate::geometry::barycentric;
 use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{MAX_FAILURES, MAX_RING_RATIO, MIN_SAMPLES, SMALL_PART};
+use crate::minkowski::tuning::{MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_SAMPLES, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
@@ -273,7 +273,7 @@ impl SphereFit {
         gap: f64,
     ) -> QueryDirection {
         self.update(set, upper);
-        let is_used = self.failures < MAX_FAILURES;
+        let is_used = self.failures < MAX_FAILED_PREDICTIONS;
         let predicted = is_used.then(|| self.predict(set, corners, normal));
         if let Some((dir, value)) = predicted.flatten() {
             if (value - upper.depth).abs() <= SMALL_PART * gap {
@@ -568,7 +568,7 @@ mod tests {
             compared: usize::MAX,
             ..SphereFit::default()
         };
-        for i in 0..MAX_FAILURES {
+        for i in 0..MAX_FAILED_PREDICTIONS {
             // The core points of these radii predict a lower support value than the balls have.
             fit.radius = [0.2, 0.2];
             let corners = |_: &VertexSet<24>| corners;
