@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! Prints the swap tables, Debian's FCL, ODE, MuJoCo and DART on libccd and on this
-//! library, as Markdown; progress goes to stderr.
+//! library, as Markdown; progress goes to stderr. Exits with 1 if what is judged fails.
 //!
 //! `cargo run --release -p lab --bin engines` the single queries of the test, in more poses (a minute)
 //! `cargo run --release -p lab --bin engines -- world` ODE worlds collided by this library alone (3 minutes)
@@ -23,19 +23,33 @@ use engines::results::{self, Simulation, swapped};
 use engines::tables;
 use harness::write_between_marks;
 
-fn single_queries() {
+/// Prints a table and the failures of its rows. Returns whether there is none.
+fn print_judged(table: &str, failures: &[String]) -> bool {
+    println!("{table}{}", failures.join("\n"));
+    failures.is_empty()
+}
+
+/// Prints simulations and their failures. Returns whether all that fails is known.
+fn print_simulations(simulations: &[Simulation]) -> bool {
+    let (known, failures) = tables::failures(simulations);
+    print_judged(&(tables::simulation_table(simulations) + &known), &failures)
+}
+
+fn single_queries() -> bool {
     let ode = compared(program("ode_static.c"), "0");
     let rows = [
         ("FCL collide", run_all(&compared(program("fcl_static.cpp"), "0"), "2 60")),
         ("ODE collide", run_all(&ode, "2 200 asis")),
         ("ODE collide, its cylinder corrected", run_all(&ode, "2 200 corrected")),
     ];
-    for (title, outputs) in rows {
-        println!("{}{}", tables::collide_table(title, &outputs), results::collide_failures(&outputs).join("\n"));
-    }
+    // All are printed, also after one that fails.
+    let judged = rows.map(|(title, outputs)| {
+        print_judged(&tables::collide_table(title, &outputs), &results::collide_failures(&outputs))
+    });
+    judged == [true; 3]
 }
 
-fn long() {
+fn long() -> bool {
     let [ode, mujoco, dart] =
         ["ode_pile.c", "mujoco_pile.c", "dart_pile.cpp"].map(|file| compared(program(file), "10"));
     let rows = [
@@ -50,7 +64,7 @@ fn long() {
         swapped("DART over FCL", &dart, 8, 3000, "15 fcl"),
         swapped("DART over ODE", &dart, 8, 3000, "15 ode"),
     ];
-    println!("{}", tables::simulation_table(&rows));
+    print_simulations(&rows)
 }
 
 /// Prints the screens, and writes the first into this folder's page.
@@ -69,13 +83,13 @@ fn steps() {
     write_between_marks("README.md", "steps", &table);
 }
 
-fn world() {
+fn world() -> bool {
     let rows: [Simulation; 3] =
         [("stack", 20, 10_000), ("hulls", 32, 3000), ("roll", 12, 3000)].map(|(scene, bodies, steps)| {
             let [libccd, _] = compared(program("ode_pile.c"), "10");
             tables::world(libccd, scene, 10, steps, bodies)
         });
-    println!("{}", tables::simulation_table(&rows));
+    print_simulations(&rows)
 }
 
 /// Prints what FCL costs by use, and writes it into the page of the engines.
@@ -88,17 +102,21 @@ fn fcl() {
 
 fn main() {
     eprintln!("On {}", harness::machine());
+    let mut passes = true;
     match std::env::args().nth(1).as_deref() {
-        None => single_queries(),
-        Some("long") => long(),
+        None => passes = single_queries(),
+        Some("long") => passes = long(),
         Some("distance") => println!("{}", tables::distance_table(&fcl_distance().map(|m| m.run("10000")))),
         Some("fcl") => fcl(),
         Some("screens") => screens(),
         Some("steps") => steps(),
-        Some("world") => world(),
+        Some("world") => passes = world(),
         Some(other) => {
             eprintln!("unknown: {other}; nothing, `distance`, `fcl`, `screens`, `steps`, `world` or `long`");
             std::process::exit(2);
         }
+    }
+    if !passes {
+        std::process::exit(1);
     }
 }

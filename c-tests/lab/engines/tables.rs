@@ -197,7 +197,26 @@ pub fn simulation_table(simulations: &[Simulation]) -> String {
             Some(_) => format!("{} of {}", sum(row, "own.deep"), sum(row, "own.queries")),
         }),
     ];
-    let failures: Vec<_> =
-        simulations.iter().flat_map(|s| s.failures.iter().map(|f| format!("{}: {f}\n", s.scene))).collect();
-    markdown(&rows, &columns) + &failures.concat()
+    markdown(&rows, &columns)
+}
+
+/// Faults of a scene on either library: scene, counter and reason. Known if libccd has them in as many starts.
+const KNOWN: [(&str, &str, &str); 1] =
+    [("DART over ODE", "pile.escaped", "the first impacts, which are deep, throw a body out of the pen")];
+
+/// Returns a line for each known fault of the simulations, and the failures that are not known.
+pub fn failures(simulations: &[Simulation]) -> (String, Vec<String>) {
+    let (mut known, mut failures) = (String::new(), Vec::new());
+    for Simulation { scene, runs, failures: all, .. } in simulations {
+        let starts = |method: usize, key| values(&runs[method], key).iter().filter(|n| **n != 0.0).count();
+        let is_known = |key| starts(1, key) <= starts(0, key);
+        let reason = KNOWN.iter().find(|(name, key, _)| name == scene && is_known(key));
+        let unknown = all.iter().filter(|text| reason.is_none_or(|(_, key, _)| !text.contains(key)));
+        failures.extend(unknown.map(|text| format!("{scene}: {text}")));
+        if let Some((_, key, why)) = reason.filter(|(_, key, _)| starts(1, key) > 0) {
+            let [theirs, ours] = [0, 1].map(|method| starts(method, key));
+            known += &format!("{scene}, known: {key} in {theirs} starts on libccd, {ours} here: {why}\n");
+        }
+    }
+    (known, failures)
 }
