@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 //! The tuned constants of the contact position and the contact manifold, with what was tried. Extent: the largest distance of
-//! an object's known vertices and center from the contact. "Off the object": of a million hits of the test `position.c`.
+//! an object's known vertices and center from the contact. "Off the object": of a million hits of the test `pos.c`.
 
 /// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
 /// a drop of 1.6 depths at that tilt (R T²/2), and all corners are found of a face whose drop grows by a depth
