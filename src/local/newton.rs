@@ -119,6 +119,7 @@ fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::EPSILON;
     use crate::minkowski::support_query::SupportQuery;
     use crate::shapes::{Random, Rotation, difference, ellipsoid};
 
@@ -151,7 +152,11 @@ mod tests {
                     query.evaluate(&mut set, &n).unwrap();
                 }
             }
-            let step = newton_step(&set, &query.upper).unwrap();
+            let Some(step) = newton_step(&set, &query.upper) else {
+                // In single precision rounding may hide the curvature.
+                assert!(EPSILON > 1e-10);
+                continue;
+            };
             assert!((step.dir - Vec3::x()).norm() < 2e-3, "{:?}", step.dir);
             assert!((step.value - radii.x).abs() < 1e-5, "{}", step.value);
             let Model::Smooth(flattest) = step.model else {
