@@ -140,6 +140,7 @@ mod tests {
     #[test]
     fn the_step_leads_to_the_shortest_axis() {
         let mut r = Random::new(4);
+        let mut count = 0;
         for _ in 0..100 {
             let radii = Vec3::new(r.within(0.5, 0.6), r.within(0.8, 1.0), r.within(0.8, 1.0));
             let body = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
@@ -153,10 +154,9 @@ mod tests {
                 }
             }
             let Some(step) = newton_step(&set, &query.upper) else {
-                // In single precision rounding may hide the curvature.
-                assert!(EPSILON > 1e-10);
                 continue;
             };
+            count += 1;
             assert!((step.dir - Vec3::x()).norm() < 2e-3, "{:?}", step.dir);
             assert!((step.value - radii.x).abs() < 1e-5, "{}", step.value);
             let Model::Smooth(flattest) = step.model else {
@@ -164,5 +164,7 @@ mod tests {
             };
             assert!(flattest.x.abs() < 0.05);
         }
+        // In single precision rounding may hide the curvature.
+        assert!(count >= if EPSILON < 1e-10 { 100 } else { 50 }, "{count}");
     }
 }
