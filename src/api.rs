@@ -491,7 +491,9 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     if !(margins.margin1 + margins.margin2 < f64::from(Real::MAX)) {
         return Err(Error::BadInput(cause));
     }
-    let pair = make_pair(a, b, settings)?;
+    let mut pair = make_pair(a, b, settings)?;
+    // A distance has no position.
+    pair.want.pos = false;
     let d = with_state(warm, |state| {
         pair.signed_distance(&margins, state, &mut OwnedBuffers::default())
     })?;

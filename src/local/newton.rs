@@ -35,8 +35,8 @@ use crate::minkowski::vertex_set::VertexSet;
 pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> Option<Prediction> {
     let n = upper.dir;
     let at = upper.point.v;
-    // The same direction says nothing of the curvature.
-    let is_other = |k: &usize| set.dir(*k).dot(&n) < 1.0 - 0.5 * MIN_ANGLE2;
+    // The same direction says nothing of the curvature. In single precision it is not exactly unit.
+    let is_other = |k: &usize| (set.dir(*k) - n).norm_squared() > MIN_ANGLE2;
     let mut others = (0..set.len()).rev().filter(is_other);
     let first = others.next()?;
     if !is_smooth_between(upper, set, first) {
@@ -119,7 +119,6 @@ fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
     use crate::minkowski::support_query::SupportQuery;
     use crate::shapes::{Random, Rotation, difference, ellipsoid};
 
@@ -140,7 +139,6 @@ mod tests {
     #[test]
     fn the_step_leads_to_the_shortest_axis() {
         let mut r = Random::new(4);
-        let mut count = 0;
         for _ in 0..100 {
             let radii = Vec3::new(r.within(0.5, 0.6), r.within(0.8, 1.0), r.within(0.8, 1.0));
             let body = ellipsoid(radii, Rotation::identity(), Vec3::zeros());
@@ -153,10 +151,7 @@ mod tests {
                     query.evaluate(&mut set, &n).unwrap();
                 }
             }
-            let Some(step) = newton_step(&set, &query.upper) else {
-                continue;
-            };
-            count += 1;
+            let step = newton_step(&set, &query.upper).unwrap();
             assert!((step.dir - Vec3::x()).norm() < 2e-3, "{:?}", step.dir);
             assert!((step.value - radii.x).abs() < 1e-5, "{}", step.value);
             let Model::Smooth(flattest) = step.model else {
@@ -164,7 +159,5 @@ mod tests {
             };
             assert!(flattest.x.abs() < 0.05);
         }
-        // In single precision rounding may hide the curvature.
-        assert!(count >= if EPSILON < 1e-10 { 100 } else { 50 }, "{count}");
     }
 }
