@@ -184,8 +184,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         self.expand_from(set, portal.as_ref(), arena)
     }
 
-    /// Runs steps 2 to 4, and stores the proof if there is one. Returns the portal; `None` with a proof, or if none was found. Not inlined,
-    /// so that its frame is released before a polytope is made.
+    /// Runs steps 2 to 4, and stores the proof if there is one. Returns the portal; `None` with a proof, or if none was
+    /// found. Not inlined, so that its frame is released before a polytope is made.
     #[inline(never)]
     fn run_without_polytope(
         &mut self,
