@@ -10,7 +10,7 @@ set -eu
 cd "$(dirname "$0")/.."
 
 cat <<'END'
-All tests of a commit, in 3 steps: 4 to 6 minutes on 2 cores, once packages and
+All tests of a commit, in 3 steps: 3 to 5 minutes on 2 cores, once packages and
 crates are there; the first time some minutes more, to fetch them.
 END
 sh c-tests/setup.sh
