@@ -75,7 +75,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     };
     let off = first.v - dir * dir.dot(&first.v);
     let lower = if off.norm() > ray.query.scale.height_eps() {
-        ray.follow(&mut portal)?
+        ray.find_lower_bound(&mut portal)?
     } else {
         ray.upper()
     };
@@ -102,7 +102,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
     }
 
     /// Finds a portal and refines it. Returns the lower bound, metres; 0 if there is no portal.
-    fn follow(&mut self, portal: &mut [Vertex; 3]) -> Result<f64, Stop> {
+    fn find_lower_bound(&mut self, portal: &mut [Vertex; 3]) -> Result<f64, Stop> {
         let (length, tolerance) = (self.upper(), self.tolerance());
         let found = discover(
             &mut self.query,

@@ -76,7 +76,7 @@ pub struct FeatureQuery<'q, A, B> {
     md: &'q MinkowskiDifference<A, B>,
     pub frame: ContactFrame,
     pub known: &'q [KnownPair],
-    /// What the known vertices tell of each object.
+    /// The extreme known vertices of both objects, and which of them are polytopes.
     evidence: Evidence,
     /// x and y of the center of each object; 0 without centers.
     pub centers: [Vec2; 2],
@@ -234,7 +234,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
     }
 }
 
-/// What the known vertices tell of both objects.
+/// The extreme known vertices of both objects, and which of them are polytopes.
 struct Evidence {
     /// The indices of the vertices of greatest height along e1, e2, -e1 and -e2.
     farthest: [[usize; 2]; 4],

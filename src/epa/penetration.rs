@@ -54,6 +54,9 @@ use crate::types::{Penetration, Status};
 /// for the rounding of a plane and of a point above it if the size of D is twice the world extent; the rest is a
 /// reserve.
 const ROUNDING_GAP_EPS: f64 = 32.0;
+/// The least squared turn of the ray, radians, for which it is evaluated again from a new interior point: 31 degrees. For
+/// smaller turns the support point of the old ray is close enough for the start of a portal.
+const MIN_NEW_RAY_TURN2: f64 = 0.3;
 
 /// The input of a query besides the support functions.
 #[derive(Clone, Copy, Debug)]
@@ -230,7 +233,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         if let Some(n) = normalise_unscaled(&-self.interior.v) {
             let turn2 = (n - *ray).norm_squared();
             *ray = n;
-            if turn2 > 0.3 {
+            if turn2 > MIN_NEW_RAY_TURN2 {
                 self.query.evaluate(set, ray)?;
             }
         }

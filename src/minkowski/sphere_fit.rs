@@ -568,37 +568,23 @@ mod tests {
             compared: usize::MAX,
             ..SphereFit::default()
         };
-        for i in 0..MAX_FAILED_PREDICTIONS {
+        let mut evaluate = |fit: &mut SphereFit| {
             // The core points of these radii predict a lower support value than the balls have.
             fit.radius = [0.2, 0.2];
             let corners = |_: &VertexSet<24>| corners;
-            let (_, source) = evaluate_beyond(
-                &mut query,
-                &mut set,
-                &mut fit,
-                corners,
-                &Vec3::x(),
-                1e-6,
-                false,
-            )
-            .unwrap();
+            let (query, set) = (&mut query, &mut set);
+            let (_, source) =
+                evaluate_beyond(query, set, fit, corners, &Vec3::x(), 1e-6, false).unwrap();
+            source
+        };
+        for i in 0..MAX_FAILED_PREDICTIONS {
+            let source = evaluate(&mut fit);
             assert_eq!((source, fit.failures), (DirectionSource::Prediction, i + 1));
             assert!(
                 fit.radius == [0.0; 2] && !fit.is_confirmed && fit.confirmed_radius() == [0.0; 2]
             );
         }
-        fit.radius = [0.2, 0.2];
-        let corners = |_: &VertexSet<24>| corners;
-        let (_, source) = evaluate_beyond(
-            &mut query,
-            &mut set,
-            &mut fit,
-            corners,
-            &Vec3::x(),
-            1e-6,
-            false,
-        )
-        .unwrap();
+        let source = evaluate(&mut fit);
         assert_eq!(source, DirectionSource::Normal);
     }
 
