@@ -375,12 +375,13 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             }
         }
         if self.proof.upper == f64::INFINITY {
-            let SupportPlane { dir, depth, point } = self.query.upper;
+            // The depth is of the order of rounding: the hull of the points contains the origin, and has no volume.
+            let SupportPlane { dir, depth, .. } = self.query.upper;
             self.proof = Proof {
                 upper: depth,
                 dir,
                 lower: 0.0,
-                points: [point.v1, point.v2],
+                points: self.prove_overlap(&dir)?.witnesses().into(),
             };
         }
         Ok(Status::Rounding)
