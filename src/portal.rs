@@ -30,7 +30,7 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::tuning::{
-    MAX_FAILURES, SMALL_PART, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
+    CENTRAL_RING_TAN, MAX_FAILURES, SMALL_PART, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
@@ -177,11 +177,11 @@ fn discovery_dir(
     }
 }
 
-/// Evaluates three directions around a ray that passes through its own support point, tilted by the tangent `tilt`.
-/// Returns their points as a portal; `None` if the set is full, or if the three points are nearly on a line.
+/// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`CENTRAL_RING_TAN`]. Returns their points as
+/// a portal; `None` if the set is full, or if the three points are nearly on a line.
 #[cold]
 #[inline(never)]
-fn ring<A: SupportMap, B: SupportMap, const N: usize>(
+pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     ray: &Vec3,
@@ -191,8 +191,8 @@ fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
-    // At most 45 degrees, also for NaN.
-    let tilt = lesser(tilt, 1.0);
+    // Also for NaN.
+    let tilt = lesser(tilt, CENTRAL_RING_TAN);
     let turns = [[-0.5, half], [-0.5, -half], [1.0, 0.0]];
     let mut corners = [Vertex::default(); 3];
     for (corner, turn) in corners.iter_mut().zip(turns) {

@@ -7,12 +7,13 @@
 //!    `first_dir`). Most queries of separated objects end here.
 //! 2. *Interior point*: the difference of the centers if they are given; else the middle of the
 //!    support points along the ray and opposite to it, which is always in D.
-//! 3. *Portal*: discovery and refinement ([`crate::portal`]).
+//! 3. *Portal*: discovery and refinement ([`crate::portal`]); if the center is near the origin, a wide ring of three
+//!    support points around the ray.
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
-//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, whose center is replaced by a support point if it
-//!    is close to the origin; if the polytope does not come to contain the origin, or rounding ends it, from two
+//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, where a support point replaces a center near the
+//!    origin; if the polytope does not come to contain the origin, or rounding ends it, from two
 //!    tetrahedra of GJK. Full buffers are replaced by larger ones.
 //! 6. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
@@ -43,10 +44,10 @@ use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::{MIN_CENTRAL_REL, SMALL_PART};
+use crate::minkowski::tuning::CENTRAL_RING_TAN;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{discover, refine};
+use crate::portal::{discover, refine, ring};
 use crate::trace;
 use crate::types::{Penetration, Status};
 
@@ -240,7 +241,15 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// Finds a portal of the ray and refines it.
+    /// Returns whether the center of D is closer to the origin than the upper bound, along unit `dir`: the polytope will
+    /// reach all around the origin.
+    #[inline(always)]
+    fn is_central(&self, dir: &Vec3) -> bool {
+        let center = self.request.center;
+        center.is_some_and(|center| -center.v.dot(dir) < self.query.upper.depth)
+    }
+
+    /// Finds a portal of the ray and refines it; a wide ring if the center is close to the origin.
     #[inline(always)]
     fn find_portal<const N: usize>(
         &mut self,
@@ -248,7 +257,13 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         ray: &Vec3,
     ) -> Result<Option<[Vertex; 3]>, Stop> {
         let gap = self.allowed_gap();
+        let is_central = self.is_central(ray);
         let query = &mut *self.query;
+        if is_central {
+            if let Some(portal) = ring(query, set, ray, CENTRAL_RING_TAN)? {
+                return Ok(Some(portal));
+            }
+        }
         let length = query.upper.depth - self.interior.v.dot(ray);
         let ring_tilt = Some((2.0 * gap / length).sqrt());
         let Some(mut portal) = discover(query, set, ray, length, gap, ring_tilt)? else {
@@ -273,13 +288,11 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         gap.allowed(&query.scale, query.upper.depth)
     }
 
-    /// Returns the fourth corner of the tetrahedron of the portal: the interior point; in place of a center that is close
-    /// to the origin, which the polytope would soon enclose, the support point opposite to the upper bound.
+    /// Returns the fourth corner of the tetrahedron of the portal: the interior point; in place of a center close to the
+    /// origin, the support point opposite to the upper bound.
     fn find_apex(&mut self, set: &mut VertexSet<SMALL_VERTICES>) -> Result<Vertex, Stop> {
-        let SupportPlane { dir, depth, .. } = self.query.upper;
-        let offset = -dir.dot(&self.interior.v);
-        let is_central = offset > MIN_CENTRAL_REL * depth && offset < SMALL_PART * depth;
-        if is_central && self.request.center.is_some() && !set.is_full() {
+        let dir = self.query.upper.dir;
+        if self.is_central(&dir) && !set.is_full() {
             return Ok(self.query.evaluate(set, &-dir)?.vertex());
         }
         Ok(Vertex {
