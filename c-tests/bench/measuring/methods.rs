@@ -51,8 +51,13 @@ impl Entry {
         self.name.starts_with("ccd")
     }
 
+    /// Returns the position of a method in the table.
+    pub fn number(name: &str) -> usize {
+        METHODS.iter().position(|entry| entry.name == name).unwrap_or_else(|| panic!("no method {name}"))
+    }
+
     pub fn find(name: &str) -> &'static Entry {
-        METHODS.iter().find(|entry| entry.name == name).unwrap_or_else(|| panic!("no method {name}"))
+        &METHODS[Entry::number(name)]
     }
 }
 

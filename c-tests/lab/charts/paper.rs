@@ -5,7 +5,7 @@
 //! shortcut.
 
 use super::deep::{self, Polytope};
-use super::figure::{self, Axis, Panel, SUPPORTS, TIME, VERTICES};
+use super::figure::{self, Axis, Panel, SUPPORTS, TIME};
 use super::{Bench, Page};
 use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
@@ -50,7 +50,7 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
 pub fn draw(page: &Page, all: &[Row]) {
     let panel = |title: &str, is_shown: &dyn Fn(&Row) -> bool, cost: Axis| {
         let rows = all.iter().filter(|row| is_shown(row)).collect();
-        Panel { title: title.to_owned(), x: VERTICES, y: cost, rows, limit: None }
+        Panel { title: title.to_owned(), x: ("vertices", |row| row.x), y: cost, rows, limit: None }
     };
     let capsule = |r: &Row| r.set.ends_with("_cap");
     let all_on = |r: &Row| capsule(r) && r.method != "Gao 2023, Algorithm 3";
@@ -63,5 +63,5 @@ pub fn draw(page: &Page, all: &[Row]) {
         panel("polytope – polytope, climbing: time", &|r| !capsule(r), TIME),
     ];
     let title = "The paper's figures over vertex counts";
-    figure::grid(&page.out.join("vertices.svg"), title, 2, panels.into(), &[page.footer()]);
+    figure::grid(&page.out.join("vertices.svg"), title, 2, panels.into(), &[page.footer()]).expect("a picture");
 }
