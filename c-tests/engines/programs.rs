@@ -7,28 +7,21 @@
 // Each driver uses a part.
 #![allow(dead_code)]
 
-use crate::harness::{self, Executable, Program, cargo_dir, locked, must_succeed, output_dir, root, run_command};
+use crate::harness::{Executable, Link, Program, cargo_dir, locked, must_succeed, output_dir, root, run_command};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
 /// Returns a program of this folder or of `lab/engines`, linked to the library that its name begins with.
 pub fn program(file: &str) -> Program {
-    let (name, extension) = file.split_once('.').expect("a source file");
-    let program = match extension {
-        "c" => Program::c(name).standard("gnu99"),
-        _ => Program::cpp(name).flag("-isystem/usr/include/eigen3"),
-    };
-    let library = name.split('_').next().expect("a library");
     let tests = root().join("c-tests");
-    let folder = ["engines", "lab/engines"].into_iter().find(|folder| tests.join(folder).join(file).exists());
-    program
-        .source(tests.join(folder.unwrap_or_default()).join(file))
-        .flag("-D_GNU_SOURCE")
-        .library(library)
-        .without_tools()
+    let sources = ["engines", "lab/engines"].map(|folder| tests.join(folder).join(file));
+    let source = sources.iter().find(|source| source.exists()).expect("a source file");
+    let (library, _) = file.split_once('_').expect("a library's program");
+    let own = if file.ends_with(".c") { "-std=gnu99" } else { "-isystem/usr/include/eigen3" };
+    Program::new(source).flag(own).flag("-D_GNU_SOURCE").flag(format!("-l{library}")).without_tools()
 }
 
 /// Output of a program.
@@ -126,7 +119,7 @@ impl Method {
         let mut command = self.program.command();
         command.args(&self.first).args(arguments.split_whitespace());
         if let Some(library) = &self.preloaded {
-            harness::preload(&mut command, library);
+            preload(&mut command, library);
         }
         command
     }
@@ -143,6 +136,16 @@ impl Method {
     }
 }
 
+/// Loads a library before the others of a command's program. By its file name: the dynamic linker
+/// splits `LD_PRELOAD` at blanks, which the path may contain.
+fn preload(command: &mut Command, library: &Path) {
+    let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
+    let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
+    dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
+    command.env("LD_PRELOAD", library.file_name().expect("a file"));
+    command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
+}
+
 /// Runs a program by each method at once.
 pub fn run_all<const N: usize>(methods: &[Method; N], arguments: &str) -> [Output; N] {
     std::thread::scope(|scope| {
@@ -153,16 +156,16 @@ pub fn run_all<const N: usize>(methods: &[Method; N], arguments: &str) -> [Outpu
 
 /// Returns a program on libccd and on this library.
 pub fn on_both(program: Program) -> [Method; 2] {
-    let program = program.link_system().build().quiet();
+    let program = program.link(Link::System).build();
     let ours = program.swapped();
     [Method::libccd("libccd", program), Method::ours("this library", ours)]
 }
 
 /// Returns a program on libccd and on this library under compare.sh, which judges one query in `every`.
 pub fn compared(program: Program, every: &str) -> [Method; 2] {
-    let program = program.flag("-rdynamic").link_system().build().quiet();
-    let options = ["--no-times", "--every", every, "--swap"];
-    let [theirs, ours] = [&options[..3], &options].map(|options| program.compared(options));
+    let program = program.flag("-rdynamic").link(Link::System).build();
+    let options = ["--fields", "--no-times", "--every", every, "--swap"];
+    let [theirs, ours] = [&options[..4], &options].map(|options| program.compared(options));
     [Method::libccd("libccd", theirs), Method::ours("this library", ours)]
 }
 
@@ -193,6 +196,6 @@ pub fn fcl_distance() -> [Method; 3] {
 /// Returns the same with every query judged on this library, and none on libccd.
 pub fn ours_judged(program: Program) -> [Method; 2] {
     let [_, ours] = compared(program.clone(), "1");
-    let theirs = program.flag("-rdynamic").link_system().build().quiet();
+    let theirs = program.flag("-rdynamic").link(Link::System).build();
     [Method::libccd("libccd", theirs), ours]
 }

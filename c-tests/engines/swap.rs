@@ -10,7 +10,7 @@ mod programs;
 #[path = "results.rs"]
 mod results;
 
-use crate::harness::{Precision, library};
+use crate::harness::{Link, Precision, library};
 use programs::{Method, compared, fcl_distance, ours_judged, program, run_all};
 use results::swapped;
 
@@ -31,7 +31,7 @@ fn fcl_collide_and_positions() {
 /// (`lab/engines/simulations.rs`).
 #[test]
 fn preloading_replaces_libccd() {
-    let on_libccd = program("fcl_static.cpp").flag("-rdynamic").link_system().build().quiet();
+    let on_libccd = program("fcl_static.cpp").flag("-rdynamic").link(Link::System).build();
     let built = library(Precision::Double).dir.join("libccd.so");
     let output = Method::ours("preloaded", on_libccd).preload(built).run("1 2");
     assert!(output.value("position.box") <= 0.007, "{}", output.text);

@@ -5,16 +5,9 @@
 //! libccd they load. The programs of tests and of the lab include this file as their module `harness`.
 //!
 //! ```ignore
-//! let program = Program::c("exact").source("truth/exact.c").link_ours_shared().build();
+//! let program = Program::new("tests/contract/touches.c").flag("-DOURS_ALONE").link(Link::Static).build();
 //! program.run(["100"]);
 //! ```
-//!
-//! | link | libccd in the process |
-//! |---|---|
-//! | `link_ours_shared` | this library's `libccd.so.2` |
-//! | `link_ours_static` | this library's `libccd.a` |
-//! | `link_ours_renamed_and_system` | the system's `libccd.so.2`, and this library with `rs_` before every name |
-//! | `link_system` | the system's; `.swapped()` gives the same program on this library |
 //!
 //! The `cc` crate finds the compilers and reads `CC`, `CXX`, `CFLAGS`, `CXXFLAGS`; `NM` and `OBJCOPY` name other tools.
 //! All programs but those marked `without_tools` are compiled and linked with `C_TESTS_FLAGS` (`-fsanitize=address`) and run
@@ -231,7 +224,7 @@ pub struct Written {
 }
 
 impl Written {
-    fn of(output: &Output) -> Written {
+    pub fn of(output: &Output) -> Written {
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         Written { stdout: text(&output.stdout), stderr: text(&output.stderr) }
     }
@@ -266,37 +259,6 @@ pub fn run_command(command: &mut Command, timeout: Duration) -> (ExitStatus, Wri
     (output.status, written)
 }
 
-/// Loads a library before the others of a command's program. By its file name: the dynamic linker
-/// splits `LD_PRELOAD` at blanks, which the path may contain.
-pub fn preload(command: &mut Command, library: &Path) {
-    let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
-    let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
-    dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
-    command.env("LD_PRELOAD", library.file_name().expect("a file"));
-    command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
-}
-
-/// Runs a command under callgrind with these options and uncompressed names. Returns its output and
-/// the text of each dump.
-pub fn callgrind(plain: &Command, options: &[&str]) -> Result<(Written, Vec<String>), String> {
-    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let out = work.path().join("out");
-    let mut command = Command::new("valgrind");
-    command.args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"]).args(options);
-    command.arg(format!("--callgrind-out-file={}", out.display()));
-    command.arg(plain.get_program()).args(plain.get_args());
-    command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
-    // Lazy binding would be counted as part of the query.
-    let output = command.env("LD_BIND_NOW", "1").output().map_err(|e| format!("valgrind: {e}"))?;
-    let written = Written::of(&output);
-    if !output.status.success() {
-        return Err(written.stderr);
-    }
-    let dumps = (1..).map(|i: usize| out.with_extension(i.to_string())).take_while(|file| file.exists());
-    let texts = std::iter::once(out.clone()).chain(dumps).filter_map(|file| fs::read_to_string(file).ok());
-    Ok((written, texts.collect()))
-}
-
 /// Parses the line `first key value key value …` of a program's output.
 pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
     let line = text.lines().find(|line| line.split(' ').next() == Some(first));
@@ -305,74 +267,44 @@ pub fn fields(text: &str, first: &str) -> BTreeMap<String, f64> {
     words.chunks(2).map(|pair| (pair[0].to_owned(), number(pair[1]))).collect()
 }
 
-/// Replaces the text between the mark `<!-- NAME -->` and the next `<!-- end -->`.
-pub fn between_marks(text: &str, name: &str, new: &str) -> String {
-    let mark = format!("<!-- {name} -->\n");
-    let parts = text.split_once(&mark).and_then(|(before, rest)| Some((before, rest.split_once("<!-- end -->")?.1)));
-    let (before, after) = parts.unwrap_or_else(|| panic!("no mark {name}"));
-    format!("{before}{mark}{new}<!-- end -->{after}")
-}
-
-/// Does the same in a page of the repository.
-pub fn write_between_marks(page: &str, name: &str, new: &str) {
-    let path = root().join(page);
-    let written = fs::read_to_string(&path).and_then(|text| fs::write(&path, between_marks(&text, name, new)));
-    written.unwrap_or_else(|e| panic!("{page}: {e}"));
-}
-
 // --- programs ---------------------------------------------------------------------------------
+
+/// The libccd of a program, by its name in `programs.mk`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Link {
+    /// This library's `libccd.so.2`.
+    Shared,
+    /// This library's `libccd.a`.
+    Static,
+    /// The system's `libccd.so.2`, and this library with `rs_` before every name.
+    Renamed,
+    /// The system's; [`Executable::swapped`] gives the same program on this library.
+    System,
+}
 
 /// C or C++ program to compile.
 #[derive(Clone, Debug)]
 pub struct Program {
-    name: String,
-    cpp: bool,
-    standard: Option<String>,
     source: PathBuf,
+    cpp: bool,
     system_headers: bool,
     flags: Vec<OsString>,
-    libraries: Vec<String>,
-    precision: Precision,
-    /// By the names of `programs.mk`: shared, static, renamed, system.
-    link: &'static str,
+    link: Link,
     tools: bool,
 }
 
 impl Program {
-    /// Returns a C program: C99 unless [`standard`](Self::standard) sets another.
-    pub fn c(name: &str) -> Program {
-        Program {
-            name: name.to_owned(),
-            cpp: false,
-            standard: None,
-            source: PathBuf::new(),
-            system_headers: false,
-            flags: Vec::new(),
-            libraries: Vec::new(),
-            precision: Precision::CURRENT,
-            link: "shared",
-            tools: true,
-        }
+    /// Returns the program of a source file in `c-tests/` (or elsewhere, by an absolute path) on this library: C99, or C++17
+    /// where the file is called so.
+    pub fn new(source: impl AsRef<Path>) -> Program {
+        let source = root().join("c-tests").join(source);
+        let cpp = source.extension() == Some("cpp".as_ref());
+        Program { source, cpp, system_headers: false, flags: Vec::new(), link: Link::Shared, tools: true }
     }
 
-    /// Returns a C++ program: C++17 unless [`standard`](Self::standard) sets another.
-    pub fn cpp(name: &str) -> Program {
-        Program::c(name).in_cpp()
-    }
-
-    /// Compiles the C source as C++.
+    /// Compiles a C source as C++.
     pub fn in_cpp(self) -> Program {
         Program { cpp: true, ..self }
-    }
-
-    /// Sets the source file, relative to `c-tests/` (or absolute).
-    pub fn source(self, path: impl AsRef<Path>) -> Program {
-        Program { source: root().join("c-tests").join(path), ..self }
-    }
-
-    /// Sets the language standard: `"c99"`, `"gnu11"`, `"c++20"`.
-    pub fn standard(self, standard: &str) -> Program {
-        Program { standard: Some(standard.to_owned()), ..self }
     }
 
     /// Includes the system's headers of libccd instead of those in `include/`.
@@ -380,7 +312,7 @@ impl Program {
         Program { system_headers: true, ..self }
     }
 
-    /// Adds a flag for compiling and linking, after those of [`compiler`].
+    /// Adds a flag for compiling and linking, which may replace one of [`compiler`]'s, or a library before libccd.
     pub fn flag(mut self, flag: impl AsRef<OsStr>) -> Program {
         self.flags.push(flag.as_ref().to_owned());
         self
@@ -391,31 +323,8 @@ impl Program {
         self.flag("-pedantic").flag("-Werror")
     }
 
-    /// Adds a library, before libccd.
-    pub fn library(mut self, name: &str) -> Program {
-        self.libraries.push(format!("-l{name}"));
-        self
-    }
-
-    /// Sets the precision of this library, [`Precision::CURRENT`] by default.
-    pub fn precision(self, precision: Precision) -> Program {
-        Program { precision, ..self }
-    }
-
-    pub fn link_ours_shared(self) -> Program {
-        Program { link: "shared", ..self }
-    }
-
-    pub fn link_ours_static(self) -> Program {
-        Program { link: "static", ..self }
-    }
-
-    pub fn link_ours_renamed_and_system(self) -> Program {
-        Program { link: "renamed", ..self }
-    }
-
-    pub fn link_system(self) -> Program {
-        Program { link: "system", ..self }
+    pub fn link(self, link: Link) -> Program {
+        Program { link, ..self }
     }
 
     /// Ignores `C_TESTS_FLAGS` and `C_TESTS_RUNNER`, for a program that fails under a sanitizer or
@@ -426,51 +335,43 @@ impl Program {
 
     /// Compiles and links; panics with the compiler's messages where that fails.
     pub fn build(self) -> Executable {
-        let is_ours = ["shared", "static"].contains(&self.link);
-        assert!(is_ours || self.precision == Precision::Double, "{}: the system's libccd is double", self.name);
+        // The system's libccd is double.
+        let is_single = Precision::CURRENT == Precision::Single && matches!(self.link, Link::Shared | Link::Static);
+        let precision = if is_single { Precision::Single } else { Precision::Double };
         let mut compile = compiler(self.cpp);
-        let default = ["c99", "c++17"][usize::from(self.cpp)];
-        compile.arg(format!("-std={}", self.standard.as_deref().unwrap_or(default)));
-        if self.precision == Precision::Single {
-            compile.arg("-DCCD_SINGLE");
-        }
-        compile.arg("-I").arg(root().join("c-tests"));
+        // clang compiles a C source as C++ only with -x.
+        let [language, standard] = if self.cpp { ["c++", "c++17"] } else { ["c", "c99"] };
+        compile.args(["-x", language]).arg(&self.source).args(["-x", "none"]).arg(format!("-std={standard}"));
+        compile.args(is_single.then_some("-DCCD_SINGLE")).arg("-I").arg(root().join("c-tests"));
         if !self.system_headers {
             compile.arg("-I").arg(root().join("include"));
         }
-        compile.args(&self.flags);
-        if self.tools {
-            compile.args(words("C_TESTS_FLAGS"));
-        }
-        // clang compiles a C source as C++ only with -x.
-        compile.args(["-x", ["c", "c++"][usize::from(self.cpp)]]).arg(&self.source);
-        compile.args(["-x", "none"]).args(&self.libraries);
-        if self.link != "system" {
-            library(self.precision);
-        }
+        compile.args(if self.tools { words("C_TESTS_FLAGS") } else { Vec::new() }).args(&self.flags);
 
         // The hash of the command distinguishes programs of one name. All tests and runs share the program until one of its
         // files changes.
         let command = quoted(std::iter::once(compile.get_program()).chain(compile.get_args()));
         let mut hash = DefaultHasher::new();
-        (&command, self.link, self.precision.name()).hash(&mut hash);
-        let program = format!("programs/{}-{:016x}", self.name, hash.finish());
+        (&command, self.link, precision.name()).hash(&mut hash);
+        let name = self.source.file_stem().unwrap_or_default().to_string_lossy();
+        let program = format!("programs/{name}-{:016x}", hash.finish());
         let path = output_dir().join(&program);
         fs::create_dir_all(path.parent().expect("a folder")).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         let variables = [
             ("PROGRAM", program.clone()),
             ("COMPILE", command),
-            ("LINK", self.link.to_owned()),
-            ("INTO", self.precision.name().to_owned()),
+            ("LINK", format!("{:?}", self.link)),
+            ("INTO", precision.name().to_owned()),
         ];
+        let library_path = (self.link != Link::System).then(|| library(precision).dir.clone());
         let lock = locked(&path.with_extension("lock"));
-        print!("{}", make(&program, &variables, &format!("the compiler (for {})", self.name)).stderr);
+        print!("{}", make(&program, &variables, &format!("the compiler (for {name})")).stderr);
         drop(lock);
 
-        let library_path = (self.link == "shared").then(|| library(self.precision).dir.clone());
-        let executable = Executable { library_path, tools: self.tools, ..Executable::from_path(&self.name, path) };
+        let library_path = library_path.filter(|_| self.link == Link::Shared);
+        let executable = Executable { library_path, tools: self.tools, ..Executable::new(path) };
         match self.link {
-            "static" => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
+            Link::Static => assert_eq!(executable.loaded_ccd(), None, "linked statically"),
             _ => executable.assert_loads_its_ccd(),
         }
         executable
@@ -481,64 +382,49 @@ impl Program {
 #[derive(Clone, Debug)]
 pub struct Executable {
     pub path: PathBuf,
-    name: String,
     /// Words of a command that runs the program.
     launcher: Vec<OsString>,
     /// Folder of this library, on which the program runs, if not on the system's.
     library_path: Option<PathBuf>,
     tools: bool,
-    quiet: bool,
 }
 
 impl Executable {
     /// Returns a program that another tool compiled, with its own search path for libraries.
-    pub fn from_path(name: &str, path: impl Into<PathBuf>) -> Executable {
-        let (path, name, launcher) = (path.into(), name.to_owned(), Vec::new());
-        Executable { path, name, launcher, library_path: None, tools: true, quiet: false }
+    pub fn new(path: impl Into<PathBuf>) -> Executable {
+        Executable { path: path.into(), launcher: Vec::new(), library_path: None, tools: true }
     }
 
     /// Returns the same program with this library instead of the system's.
     pub fn swapped(&self) -> Executable {
-        let library_path = Some(library(Precision::Double).dir.clone());
-        let swapped = Executable { library_path, ..self.clone() };
+        let swapped = Executable { library_path: Some(library(Precision::Double).dir.clone()), ..self.clone() };
         swapped.assert_loads_its_ccd();
         swapped
     }
 
-    /// Returns the same program run by compare.sh, which adds a line `counted key value …` to its output.
+    /// Returns the same program run by compare.sh with these options.
     pub fn compared(&self, options: &[&str]) -> Executable {
-        let mut launcher: Vec<OsString> = vec!["sh".into(), root().join("c-tests/compare.sh").into()];
-        launcher.extend(["--fields".into(), "--library".into()]);
+        let mut launcher: Vec<OsString> =
+            vec!["sh".into(), root().join("c-tests/compare.sh").into(), "--library".into()];
         launcher.push(library(Precision::Double).dir.join("libccd.so").into());
         launcher.extend(options.iter().map(OsString::from));
         Executable { library_path: None, launcher, ..self.clone() }
     }
 
-    /// Prints compare.sh's screen on stderr in place of that line.
-    pub fn with_screen(mut self) -> Executable {
-        self.launcher.retain(|word| word != "--fields");
-        self
-    }
-
-    /// Does not print the program's output.
-    pub fn quiet(self) -> Executable {
-        Executable { quiet: true, ..self }
-    }
-
     /// Runs the program and prints its output; panics unless it exits with 0 in time.
     pub fn run(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Written {
         let (status, written) = self.run_to_end(args);
-        assert!(status.success(), "{} failed: {status}\n{:?}\n{}", self.name, self.command(), written.stderr);
+        assert!(status.success(), "{status}: {:?}\n{}", self.command(), written.stderr);
         written
     }
 
     /// Runs the program as [`run`](Self::run) does, with any exit code. It has 300 s, under a tool or an emulator twenty
-    /// times that.
+    /// times that. Output that is too long to read is not printed.
     pub fn run_to_end(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> (ExitStatus, Written) {
         let seconds = if self.runner().is_empty() { 300 } else { 6000 };
         let (status, written) = run_command(self.command().args(args), Duration::from_secs(seconds));
-        if !self.quiet {
-            println!("--- {}\n{}{}", self.name, written.stdout, written.stderr);
+        if written.stdout.len() < 20_000 {
+            println!("--- {}\n{}{}", self.path.display(), written.stdout, written.stderr);
         }
         (status, written)
     }
@@ -571,7 +457,7 @@ impl Executable {
     /// Returns the libccd.so.2 that the dynamic linker finds for this program, as ldd does.
     pub fn loaded_ccd(&self) -> Option<PathBuf> {
         let mut command = self.command_of(emulator().into_iter().map(OsString::from));
-        let written = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.name);
+        let written = must_succeed(command.env("LD_TRACE_LOADED_OBJECTS", "1"), &self.path.display().to_string());
         let line = written.stdout.lines().find(|line| line.contains("libccd.so"))?;
         // The path may contain blanks.
         let (path, _address) = line.split_once("=> ")?.1.rsplit_once(" (0x")?;
@@ -582,10 +468,14 @@ impl Executable {
     /// installed in /usr/local, this one is found first.
     fn assert_loads_its_ccd(&self) {
         let loaded = self.loaded_ccd();
-        let file = loaded.as_deref().unwrap_or_else(|| panic!("{} loads no libccd", self.name));
-        let is_ours = fs::read(file).is_ok_and(|bytes| bytes.windows(17).any(|w| w == b"ccdImplementation"));
-        assert_eq!(is_ours, self.library_path.is_some(), "{} runs on {loaded:?}", self.name);
-        assert!(!is_ours || file.parent() == self.library_path.as_deref(), "{} runs on {loaded:?}", self.name);
+        let is_ours = |file: &PathBuf| {
+            fs::read(file).is_ok_and(|bytes| bytes.windows(17).any(|word| word == b"ccdImplementation"))
+        };
+        let is_right = loaded.as_ref().is_some_and(|file| match &self.library_path {
+            Some(dir) => is_ours(file) && file.parent() == Some(dir),
+            None => !is_ours(file),
+        });
+        assert!(is_right, "{} runs on {loaded:?}", self.path.display());
     }
 }
 

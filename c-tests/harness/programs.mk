@@ -39,12 +39,12 @@ $(INTO)/native.txt: $(INTO)/libccd.a
 
 else
 
-ARCHIVE_static = $(INTO)/libccd.a
-ARCHIVE_renamed = $(INTO)/librs_ccd.a
-LIBCCD_shared = -L$(INTO) -lccd
-LIBCCD_static = $(ARCHIVE_static) $$(cat $(INTO)/native.txt)
-LIBCCD_renamed = $(ARCHIVE_renamed) -lccd $$(cat $(INTO)/native.txt)
-LIBCCD_system = -lccd
+ARCHIVE_Static = $(INTO)/libccd.a
+ARCHIVE_Renamed = $(INTO)/librs_ccd.a
+LIBCCD_Shared = -L$(INTO) -lccd
+LIBCCD_Static = $(ARCHIVE_Static) $$(cat $(INTO)/native.txt)
+LIBCCD_Renamed = $(ARCHIVE_Renamed) -lccd $$(cat $(INTO)/native.txt)
+LIBCCD_System = -lccd
 
 # The compiler writes which files a program depends on.
 -include $(PROGRAM).d

@@ -22,7 +22,7 @@ mod harness;
 #[path = "../tests/stability/programs.rs"]
 mod programs;
 
-use harness::{Executable, Program};
+use harness::{Executable, Link, Program};
 use programs::{determinism, program};
 
 /// Runs a program in the terminal with the given arguments, then the defaults of the others.
@@ -35,13 +35,11 @@ fn show(program: &Executable, given: &[String], defaults: &[&str]) {
 
 /// Builds a program of another folder of tests, with this library alone.
 fn elsewhere(path: &str) -> Executable {
-    let name = path.rsplit('/').next().unwrap_or(path);
-    let program = Program::c(name).source(format!("tests/{path}.c"));
-    program.flag("-DOURS_ALONE").link_ours_shared().build()
+    Program::new(format!("tests/{path}.c")).flag("-DOURS_ALONE").build()
 }
 
 fn worst_case() -> Executable {
-    programs::beside_libccd(Program::c("worst_case").source("lab/worst_case.c")).build()
+    programs::beside_libccd(Program::new("lab/worst_case.c")).build()
 }
 
 /// Runs the check of the truth on the recorded contacts and on every pair set.
@@ -55,7 +53,7 @@ fn truth(given: &[String]) {
     files.sort();
     files.insert(0, folder.join("tools/record/contacts.bin").display().to_string());
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
-    let program = Program::c("truth").strict().source("lab/truth.c").flag("-DOURS_ALONE").link_ours_static().build();
+    let program = Program::new("lab/truth.c").strict().flag("-DOURS_ALONE").link(Link::Static).build();
     show(&program, given, &[&["100000", "1"], &files[..]].concat());
 }
 

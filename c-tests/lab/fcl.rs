@@ -14,7 +14,7 @@ fn fcl_header() {
         Precision::Single => (&["c++11"], ["-O0", "-g0"]),
     };
     for standard in standards {
-        let program = Program::cpp("fcl").source("lab/fcl.cpp").standard(standard).library("fcl");
+        let program = Program::new("lab/fcl.cpp").flag(format!("-std={standard}")).flag("-lfcl");
         let program = [flags[0], flags[1], "-D_GNU_SOURCE", "-DOURS_ALONE", "-isystem/usr/include/eigen3"]
             .into_iter()
             .fold(program, Program::flag);

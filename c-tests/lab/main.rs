@@ -28,5 +28,8 @@ mod fcl;
 mod miri;
 mod packaging;
 #[cfg(not(feature = "single"))]
+#[allow(dead_code)]
+mod pages;
+#[cfg(not(feature = "single"))]
 #[path = "engines/simulations.rs"]
 mod simulations;

@@ -5,6 +5,7 @@
 //! program itself.
 
 use std::ffi::c_void;
+use std::fs;
 use std::hint::black_box;
 use std::ops::AddAssign;
 use std::process::Command;
@@ -12,6 +13,7 @@ use std::process::Command;
 use super::libraries::Libraries;
 use super::methods::Method;
 use super::scene::{Pair, Scene};
+use crate::harness::Written;
 
 /// Set in the process under callgrind.
 const COUNTING: &str = "WARMCCD_COUNTING";
@@ -104,13 +106,34 @@ pub fn count(libraries: &Libraries, scene: &Scene, method: &mut Method, every: u
     unsafe { (libraries.callbacks.end)() };
 }
 
+/// Runs a command under callgrind with these options and uncompressed names. Returns its output and
+/// the text of each dump.
+pub fn run(plain: &Command, options: &[&str]) -> Result<(Written, Vec<String>), String> {
+    let work = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let out = work.path().join("out");
+    let mut command = Command::new("valgrind");
+    command.args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"]).args(options);
+    command.arg(format!("--callgrind-out-file={}", out.display()));
+    command.arg(plain.get_program()).args(plain.get_args());
+    command.envs(plain.get_envs().filter_map(|(name, to)| Some((name, to?))));
+    // Lazy binding would be counted as part of the query.
+    let output = command.env("LD_BIND_NOW", "1").output().map_err(|e| format!("valgrind: {e}"))?;
+    let written = Written::of(&output);
+    if !output.status.success() {
+        return Err(written.stderr);
+    }
+    let dumps = (1..).map(|i: usize| out.with_extension(i.to_string())).take_while(|file| file.exists());
+    let texts = std::iter::once(out.clone()).chain(dumps).filter_map(|file| fs::read_to_string(file).ok());
+    Ok((written, texts.collect()))
+}
+
 /// Runs this program under callgrind with the words of a command. Returns the counts in their order.
 pub fn counts(command: &[&str]) -> Result<Vec<Count>, String> {
     let program = std::env::current_exe().map_err(|e| e.to_string())?;
     let mut plain = Command::new(&program);
     plain.args(command).env(COUNTING, "1");
     let options = ["--branch-sim=yes", "--toggle-collect=bench_counted", "--dump-after=bench_end"];
-    let (_, texts) = crate::harness::callgrind(&plain, &options)?;
+    let (_, texts) = run(&plain, &options)?;
     let program = program.display().to_string();
     // The first is the end of the program.
     Ok(texts.iter().skip(1).map(|text| parse(text, &program)).collect())

@@ -15,6 +15,7 @@ use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
 use crate::measuring::scene::Scene;
 use crate::measuring::{callgrind, csv};
+use crate::pages::write_between_marks;
 
 /// Of every engine whose tolerance is not built in, in metres.
 const METHODS: [(&str, Start, f64); 3] = [
@@ -73,5 +74,5 @@ pub fn run() {
     csv::write(&Path::new(OUT).join("engines.csv"), &libraries.machine, &rows);
     let table = table(&rows);
     println!("{table}");
-    harness::write_between_marks("README.md", "table engines", &format!("{table}\n"));
+    write_between_marks("README.md", "table engines", &format!("{table}\n"));
 }

@@ -9,6 +9,8 @@ mod charts;
 mod harness;
 #[path = "../../bench/measuring/mod.rs"]
 mod measuring;
+#[path = "../pages.rs"]
+mod pages;
 
 use measuring::ledger::{self, Cost};
 use measuring::libraries::Libraries;

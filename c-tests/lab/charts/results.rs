@@ -10,6 +10,7 @@ use crate::measuring::ledger::Cost;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::Start;
 use crate::measuring::scene::{DEPTHS, KINDS};
+use crate::pages::between_marks;
 
 /// Returns a table; `|` separates the cells of its head.
 pub fn markdown(head: &str, lines: impl IntoIterator<Item = Vec<String>>) -> String {
@@ -109,7 +110,7 @@ pub fn write(page: &Page, tables: &[(&str, String)]) {
     let committed = harness::root().join("c-tests/bench/charts/README.md");
     let mut text = std::fs::read_to_string(&committed).expect("the charts' page");
     for (name, table) in tables {
-        text = harness::between_marks(&text, &format!("table {name}"), &format!("{table}\n"));
+        text = between_marks(&text, &format!("table {name}"), &format!("{table}\n"));
     }
     let path = page.out.join("README.md");
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{}: {e}", path.display()));

@@ -4,18 +4,18 @@
 //! compare.sh on programs whose callbacks throw, jump, return wrong points, have memory, and query from many
 //! threads: the program's results are those without the tool, and the counts are those known by other means.
 
-use crate::harness::{self, Executable, Program, fields, root};
+use crate::harness::{self, Executable, Link, Program, fields, root};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
 fn on_libccd(program: Program) -> Executable {
-    program.link_system().without_tools().build().quiet()
+    program.link(Link::System).without_tools().build()
 }
 
 fn callbacks() -> Executable {
-    let program = Program::cpp("callbacks").source("lab/compare/callbacks.cpp");
+    let program = Program::new("lab/compare/callbacks.cpp");
     on_libccd(program.flag("-pthread"))
 }
 
@@ -30,7 +30,7 @@ impl Compared {
     fn run(mode: &str, options: &[&str]) -> Compared {
         let program = callbacks();
         let alone = program.run([mode]).stdout;
-        let with = program.compared(options).run([mode]).stdout;
+        let with = program.compared(&[&["--fields"], options].concat()).run([mode]).stdout;
         let [alone, with_tool] = [&alone, &with].map(|stdout| fields(stdout, "results"));
         Compared { alone, with: with_tool, counted: fields(&with, "counted") }
     }
@@ -147,8 +147,7 @@ fn threads_children_and_nested_queries_are_counted() {
 
 /// Returns the exit code, or 128 and the signal as in a shell, and the tool's output.
 fn screen_of(program: &Path, args: &[&str], options: &[&str]) -> (i32, String) {
-    let (status, written) =
-        Executable::from_path("compared", program).quiet().compared(options).with_screen().run_to_end(args);
+    let (status, written) = Executable::new(program).compared(options).run_to_end(args);
     (status.code().expect("a code"), written.stderr)
 }
 
@@ -197,11 +196,11 @@ fn programs_that_cannot_be_compared_get_one_line() {
 /// library made.
 #[test]
 fn recorded_contacts_are_counted_as_by_the_benchmark() {
-    let replay = on_libccd(Program::c("replay").source("tools/record/replay.c"));
+    let replay = on_libccd(Program::new("tools/record/replay.c"));
     let recording = root().join("c-tests/tools/record/contacts.bin");
     let theirs = replay.run([&recording]).stdout;
     let ours = replay.swapped().run([&recording]).stdout;
-    let counted = fields(&replay.compared(EVERY).run([&recording]).stdout, "counted");
+    let counted = fields(&replay.compared(&["--fields", "--every", "1"]).run([&recording]).stdout, "counted");
     for (side, text) in [("theirs", &theirs), ("ours", &ours)] {
         // missed, false, broken, deep, unsound, mean and largest error, supports of both methods; from the end
         let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().rev().collect()).collect();
@@ -258,7 +257,7 @@ fn written_cases_replay() {
     for path in &kept {
         assert!(screen.contains(path.to_str().expect("a path")), "{screen}");
         // with libccd's header alone and the compiler's strictest warnings
-        let case = Program::c("case").source(path).system_headers();
+        let case = Program::new(path).system_headers();
         let case = on_libccd(case.strict());
         assert_eq!(case.run_to_end([""; 0]).0.code(), Some(1), "{path:?}");
         let right = case.swapped().run([""; 0]).stdout;

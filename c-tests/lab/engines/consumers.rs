@@ -5,7 +5,7 @@
 //! library's own interface.
 
 use super::programs::{Method, on_both, program};
-use crate::harness::{self, Executable, Precision, output_dir, root};
+use crate::harness::{self, Executable, Link, Precision, must_succeed, output_dir, root};
 use std::process::Command;
 
 /// The programs whose simulation steps are timed and whose queries compare.sh's screen shows: title, file,
@@ -19,8 +19,8 @@ pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
 
 /// Returns the screen that compare.sh prints about a program.
 pub fn screen(file: &str, arguments: &str) -> String {
-    let program = program(file).flag("-DTIMED").link_system().build().quiet();
-    let written = program.compared(&[]).with_screen().run(arguments.split(' '));
+    let program = program(file).flag("-DTIMED").link(Link::System).build();
+    let written = must_succeed(program.compared(&[]).command().args(arguments.split(' ')), file);
     let name = file.split('.').next().unwrap_or_default();
     let path = program.path.to_string_lossy();
     let screen = written.stderr.replace(&*path, &format!("./{name} {arguments}"));
@@ -34,11 +34,11 @@ pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
     let [theirs, ours] = if is_timed {
         on_both(program())
     } else {
-        let theirs = program().link_ours_renamed_and_system().build().quiet();
+        let theirs = program().link(Link::Renamed).build();
         let ours = theirs.swapped();
         [Method::libccd("", theirs), Method::ours("", ours)]
     };
-    let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE").link_ours_shared().build().quiet();
+    let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE").build();
     [
         theirs.named("`fcl::collide` on libccd").first("0"),
         ours.named("`fcl::collide` on this library").first("0"),
@@ -52,7 +52,7 @@ pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
 pub fn ode_world(libccd: Method) -> [Method; 3] {
     let world = |contacts| {
         let program = program("ode_pile.c").flag(format!("-DCONTACTS={contacts}")).flag("-DOURS_ALONE");
-        program.link_ours_shared().build().quiet()
+        program.build()
     };
     [
         libccd,
@@ -76,7 +76,7 @@ pub fn python_wheel() -> Result<[Method; 2], String> {
         let mut pip = Command::new(&python);
         try_to(pip.args(["-m", "pip", "install", "--only-binary=:all:", "python-fcl"]))?;
     }
-    let python = Executable::from_path("python-fcl", python);
+    let python = Executable::new(python);
     let script = root().join("c-tests/lab/engines/wheel.py");
     let theirs = Method::libccd("the wheel's libccd", python.clone()).first(&script);
     let ours = Method::ours("this library", python).first(&script);

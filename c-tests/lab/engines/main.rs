@@ -16,12 +16,14 @@
 mod engines;
 #[path = "../../harness/mod.rs"]
 mod harness;
+#[path = "../pages.rs"]
+mod pages;
 
 use engines::consumers::{self, CONSUMERS};
 use engines::programs::{compared, fcl_distance, program, run_all};
 use engines::results::{self, Simulation, swapped};
 use engines::tables;
-use harness::write_between_marks;
+use pages::write_between_marks;
 
 /// Prints a table and the failures of its rows. Returns whether there is none.
 fn print_judged(table: &str, failures: &[String]) -> bool {

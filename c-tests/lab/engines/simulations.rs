@@ -7,7 +7,7 @@
 use crate::engines::programs::{fcl_distance, ours_judged, program, run_all};
 use crate::engines::results::swapped;
 use crate::engines::{consumers, tables};
-use crate::harness::callgrind;
+use crate::measuring::callgrind;
 
 /// This library changes nothing about FCL's own signed distance; with `libwarmccd-fcl.so` FCL answers every
 /// configuration, touching boxes and random pairs right, and throws nothing.
@@ -107,7 +107,7 @@ fn fcl_header_costs_little() {
     let instructions = |functions: &[&str]| {
         let toggles: Vec<_> = functions.iter().map(|name| format!("--toggle-collect={name}")).collect();
         let toggles: Vec<_> = toggles.iter().map(String::as_str).collect();
-        let (_, dumps) = callgrind(&command, &toggles).unwrap_or_else(|error| panic!("{error}"));
+        let (_, dumps) = callgrind::run(&command, &toggles).unwrap_or_else(|error| panic!("{error}"));
         let totals = dumps.iter().flat_map(|dump| dump.lines()).filter_map(|line| line.strip_prefix("totals: "));
         totals.map(|n| n.parse::<f64>().expect("a count")).sum::<f64>()
     };

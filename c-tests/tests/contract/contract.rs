@@ -8,7 +8,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::harness::{self, Precision, Program};
+use crate::harness::{self, Link, Precision, Program};
+#[cfg(not(feature = "single"))]
+use crate::measuring::callgrind;
 
 const NO_ARGS: [&str; 0] = [];
 
@@ -25,12 +27,12 @@ fn calls() -> Vec<(&'static str, bool)> {
 
 /// Returns a program of this directory.
 fn program(name: &str) -> Program {
-    Program::c(name).source(format!("tests/contract/{name}.c")).strict()
+    Program::new(format!("tests/contract/{name}.c")).strict()
 }
 
 /// Returns a program that runs on this library alone.
 fn on_this_library(name: &str) -> Program {
-    program(name).flag("-DOURS_ALONE").link_ours_shared()
+    program(name).flag("-DOURS_ALONE")
 }
 
 /// Returns whether results are compared with Debian's libccd: it is double, and for processors other
@@ -52,8 +54,7 @@ fn ours(file: &str) -> PathBuf {
 /// Returns the installed libccd.so.2 that the dynamic linker finds.
 fn installed() -> PathBuf {
     program("objects")
-        .precision(Precision::Double)
-        .link_system()
+        .link(Link::System)
         .build()
         .loaded_ccd()
         .expect("a program linked with the system's libccd loads it")
@@ -151,9 +152,9 @@ fn data_is_linked_by_copy_relocations() {
         harness::compiler_builder(false).get_compiler().is_like_clang().then_some("-fdirect-access-external-data");
     for flags in [["-fPIE", "-pie"], ["-fno-pie", "-no-pie"]] {
         let build = |program| flags.into_iter().chain(direct).fold(program, Program::flag).build();
-        let mut programs = vec![build(program("objects").link_ours_shared())];
+        let mut programs = vec![build(program("objects"))];
         if is_compared() {
-            let system = build(program("objects").system_headers().link_system());
+            let system = build(program("objects").system_headers().link(Link::System));
             programs.push(system.swapped());
             programs.push(system);
         }
@@ -172,6 +173,9 @@ fn data_is_linked_by_copy_relocations() {
     }
     assert_eq!(texts.len(), 1, "other data in another library or link");
 }
+
+/// Includes libccd's headers, and prints what their macros and inline functions compute.
+const HEADERS: &str = "tests/contract/headers.c";
 
 // --- headers ------------------------------------------------------------------
 
@@ -203,7 +207,7 @@ fn headers_have_all_names_of_libccd_and_all_are_compared() {
     assert!(theirs.len() > 70, "{theirs:?}");
     assert_eq!(theirs.difference(&ours).next(), None, "missing");
 
-    let path = harness::root().join("c-tests/tests/contract/headers.c");
+    let path = harness::root().join("c-tests").join(HEADERS);
     let program = std::fs::read_to_string(path).expect("headers.c can be read");
     let program = names(&program);
     let exported = dynamic_symbols(&installed());
@@ -221,20 +225,19 @@ fn headers_have_all_names_of_libccd_and_all_are_compared() {
 fn headers_compute_the_same_as_libccd() {
     let single_config = harness::root().join("c-tests/tests/contract/single");
     for (program, theirs, ours) in [
-        (Program::c("headers"), "c99", "c99"),
-        (Program::c("headers"), "gnu17", "c11"),
-        // A C++ compiler takes the same source for C++.
-        (Program::cpp("headers"), "c++11", "c++11"),
+        (Program::new(HEADERS), "c99", "c99"),
+        (Program::new(HEADERS), "gnu17", "c11"),
+        (Program::new(HEADERS).in_cpp(), "c++11", "c++11"),
     ] {
-        let program = program.source("tests/contract/headers.c").without_tools();
-        let double = program.precision(Precision::Double).link_system();
+        let program = program.without_tools();
+        let double = program.link(Link::System);
         for (single, program) in [(false, double.clone()), (true, double.flag("-DCCD_SINGLE"))] {
-            let mut of_theirs = program.clone().system_headers().standard(theirs);
+            let mut of_theirs = program.clone().system_headers().flag(format!("-std={theirs}"));
             if single {
                 of_theirs = of_theirs.flag("-I").flag(&single_config);
             }
             let [theirs, ours] =
-                [of_theirs, program.standard(ours)].map(|program| program.build().quiet().run(NO_ARGS).stdout);
+                [of_theirs, program.flag(format!("-std={ours}"))].map(|program| program.build().run(NO_ARGS).stdout);
             assert!(ours.lines().count() > 1_000_000);
             let different = ours.lines().zip(theirs.lines()).find(|(a, b)| a != b);
             assert_eq!(different, None, "ours and libccd's, single: {single}");
@@ -255,7 +258,7 @@ fn headers_compile_without_warnings() {
                 let mut compile = if is_clang { Command::new(clang) } else { harness::compiler(is_cpp) };
                 compile.args(["-x", if is_cpp { "c++" } else { "c" }, &format!("-std={standard}"), "-fsyntax-only"]);
                 compile.args(["-Wall", "-Wextra", "-pedantic", "-Wshadow", "-Werror", precision, "-I"]);
-                compile.arg(path("include")).arg(path("c-tests/tests/contract/headers.c"));
+                compile.arg(path("include")).arg(path("c-tests").join(HEADERS));
                 harness::must_succeed(&mut compile, "the compiler");
             }
         }
@@ -265,16 +268,16 @@ fn headers_compile_without_warnings() {
 // --- behaviour ------------------------------------------------------------------
 
 fn polytope_program() -> Program {
-    program("polytope").standard("gnu99")
+    program("polytope").flag("-std=gnu99")
 }
 
 /// Checks the polytope functions, whose elements are the same in the same order on libccd.
 #[test]
 fn polytopes() {
     let rounds = [harness::rounds(200)];
-    let ours = polytope_program().link_ours_shared().build().run(&rounds).stdout;
+    let ours = polytope_program().build().run(&rounds).stdout;
     if is_compared() {
-        let theirs = polytope_program().link_system().build().run(&rounds).stdout;
+        let theirs = polytope_program().link(Link::System).build().run(&rounds).stdout;
         assert!(ours == theirs, "other polytopes than libccd's");
     }
 }
@@ -282,18 +285,19 @@ fn polytopes() {
 /// Compares the instructions of the polytope functions, which FCL's EPA calls, with libccd's. (Counts of
 /// instructions are exact, times are not.)
 #[test]
+#[cfg(not(feature = "single"))]
 fn polytope_functions_take_no_more_instructions_than_libccd() {
     if !is_compared() {
-        println!("skipped: Debian's libccd is double, and this is compared on x86-64");
+        println!("skipped: compared on x86-64");
         return;
     }
     if !harness::installed("valgrind") || harness::emulated() {
         println!("skipped: valgrind is not installed, or not for this processor");
         return;
     }
-    let profile = |link: fn(Program) -> Program| {
-        let mut command = link(polytope_program().without_tools()).build().command();
-        let (_, profiles) = harness::callgrind(command.arg("20"), &[]).unwrap_or_else(|error| panic!("{error}"));
+    let profile = |link: Link| {
+        let mut command = polytope_program().without_tools().link(link).build().command();
+        let (_, profiles) = callgrind::run(command.arg("20"), &[]).unwrap_or_else(|error| panic!("{error}"));
         profiles.concat()
     };
     // A call is three lines: `cfn=FUNCTION`, `calls=...`, and one that ends in its instructions.
@@ -303,7 +307,7 @@ fn polytope_functions_take_no_more_instructions_than_libccd() {
         let costs = costs.map(|(_, cost)| cost.rsplit(' ').next().unwrap_or_default());
         costs.map(|cost| cost.parse::<u64>().expect("a number")).sum()
     };
-    let profiles = [profile(Program::link_system), profile(Program::link_ours_shared)];
+    let profiles = [profile(Link::System), profile(Link::Shared)];
     for name in ["AddVertex", "AddEdge", "AddFace", "Nearest", "RecomputeDistances"] {
         let [theirs, ours] = profiles.each_ref().map(|profile| instructions(profile, &format!("ccdPt{name}")));
         println!("ccdPt{name}: libccd {theirs}, this library {ours} instructions");
@@ -313,13 +317,13 @@ fn polytope_functions_take_no_more_instructions_than_libccd() {
 
 run_programs! {
     distances_of_a_point_to_segments_and_triangles: on_this_library("point_distance"), [harness::rounds(20_000)];
-    callbacks: on_this_library("callbacks").library("pthread"), NO_ARGS;
+    callbacks: on_this_library("callbacks").flag("-lpthread"), NO_ARGS;
     arguments: on_this_library("arguments"), [harness::rounds(100)];
     objects_that_touch_are_a_miss: on_this_library("touches"), [harness::rounds(20_000)];
     memory: on_this_library("memory").without_tools(), NO_ARGS;
-    threads: on_this_library("threads").library("pthread"), NO_ARGS;
+    threads: on_this_library("threads").flag("-lpthread"), NO_ARGS;
     longjmp_out_of_callbacks: on_this_library("exceptions"), [harness::rounds(20)];
-    longjmp_out_of_callbacks_of_the_archive: on_this_library("exceptions").link_ours_static(), [harness::rounds(20)];
+    longjmp_out_of_callbacks_of_the_archive: on_this_library("exceptions").link(Link::Static), [harness::rounds(20)];
     exceptions_out_of_callbacks: on_this_library("exceptions").in_cpp(), [harness::rounds(20)];
-    exceptions_out_of_callbacks_of_the_archive: on_this_library("exceptions").in_cpp().link_ours_static(), [harness::rounds(20)];
+    exceptions_out_of_callbacks_of_the_archive: on_this_library("exceptions").in_cpp().link(Link::Static), [harness::rounds(20)];
 }

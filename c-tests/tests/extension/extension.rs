@@ -11,10 +11,7 @@ const NO_ARGS: [&str; 0] = [];
 
 /// Returns a C or C++ program of c-tests on this library.
 fn program(path: &str) -> Program {
-    let file = Path::new(path);
-    let program = Program::c(&file.file_stem().expect("a file").to_string_lossy()).source(path);
-    let program = if file.extension() == Some("cpp".as_ref()) { program.in_cpp() } else { program };
-    program.flag("-DOURS_ALONE").link_ours_shared()
+    Program::new(path).flag("-DOURS_ALONE")
 }
 
 /// Returns N where one scene in N is run: 1, or `under_tool` under a tool, which checks memory.
@@ -24,7 +21,7 @@ fn one_in(under_tool: u32) -> String {
 
 run_programs! {
     cpp_wrapper: program("tests/extension/wrapper.cpp").strict(), NO_ARGS;
-    cpp_wrapper_in_cpp20: program("tests/extension/wrapper.cpp").strict().standard("c++20"), NO_ARGS;
+    cpp_wrapper_in_cpp20: program("tests/extension/wrapper.cpp").strict().flag("-std=c++20"), NO_ARGS;
     faults_of_support_functions_are_detected: program("tests/extension/support_check.c").strict(), NO_ARGS;
     status_says_why_a_search_ended: program("tests/extension/status.c").strict(), NO_ARGS;
     results_from_every_kind_of_state: program("tests/extension/warm_states.c").strict(), [harness::rounds(400)];
@@ -39,7 +36,7 @@ run_programs! {
 #[cfg(not(feature = "single"))]
 #[test]
 fn fcl_example() {
-    let example = program("examples/fcl.cpp").flag("-isystem/usr/include/eigen3").library("fcl");
+    let example = program("examples/fcl.cpp").flag("-isystem/usr/include/eigen3").flag("-lfcl");
     let output = example.build().run(NO_ARGS).stdout;
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(

@@ -91,7 +91,7 @@ pub fn consumer(name: &str, way: &str, options: &[String]) -> PathBuf {
 /// the static one.
 pub fn assert_runs_on_ours(program: &Path, shared_under: Option<&Path>) {
     let name = program.file_name().expect("a program").to_string_lossy();
-    let program = Executable::from_path(&name, program);
+    let program = Executable::new(program);
     let loaded = program.loaded_ccd();
     match shared_under {
         Some(dir) => assert!(loaded.as_ref().is_some_and(|path| path.starts_with(dir)), "{name} runs on {loaded:?}"),

@@ -6,7 +6,7 @@
 
 mod install;
 
-use crate::harness::{self, Executable, Precision, Program, must_succeed, output_dir, root};
+use crate::harness::{self, Executable, Link, Precision, Program, must_succeed, output_dir, root};
 use install::{
     assert_all_run_on_ours, assert_runs_on_ours, c_compiler, consumer, define, empty_dir, find, installed_and_moved,
     page, run,
@@ -165,25 +165,25 @@ fn assert_depth_of_the_ball(output: &str) {
 }
 
 /// Compiles a page's program without a warning.
-fn strict(program: Program, page: &str, language: &str) -> Executable {
-    program.source(program_of(&format!("{page}-{language}"), page, language)).strict().build()
+fn strict(page: &str, language: &str) -> Executable {
+    Program::new(program_of(&format!("{page}-{language}"), page, language)).strict().build()
 }
 
 /// Runs README.md's C program on this library and, in double precision, on libccd.
 #[test]
 fn readme_c_program() {
-    let program = strict(Program::c("readme"), "README.md", "c");
+    let program = strict("README.md", "c");
     assert_depth_of_the_ball(&program.run([""; 0]).stdout);
     if Precision::CURRENT == Precision::Double {
-        let program = Program::c("readme-libccd").source(program_of("readme-libccd", "README.md", "c"));
-        let output = program.link_system().build().run([""; 0]).stdout;
+        let program = Program::new(program_of("readme-libccd", "README.md", "c"));
+        let output = program.link(Link::System).build().run([""; 0]).stdout;
         assert!(page("README.md").contains(output.trim()), "{output}");
     }
 }
 
 #[test]
 fn include_readme_c_program() {
-    let program = strict(Program::c("frames"), "include/README.md", "c");
+    let program = strict("include/README.md", "c");
     assert_depth_of_the_box(&program.run([""; 0]).stdout);
 }
 
@@ -221,7 +221,7 @@ fn readme_link_commands() {
 #[test]
 #[cfg(not(feature = "single"))]
 fn include_readme_cpp_program() {
-    let program = strict(Program::cpp("readme"), "include/README.md", "cpp");
+    let program = strict("include/README.md", "cpp");
     let depth = numbers(&program.run([""; 0]).stdout)[0];
     assert!((depth - (2.0 - 0.14_f64.sqrt())).abs() < 1e-5, "{depth}");
 }

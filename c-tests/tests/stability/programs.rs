@@ -3,11 +3,11 @@
 
 //! Builds the C programs of this folder.
 
-use crate::harness::{Executable, Precision, Program};
+use crate::harness::{Executable, Link, Precision, Program};
 
 /// Returns a program of this folder, not yet linked.
 pub fn source(name: &str) -> Program {
-    Program::c(name).strict().source(format!("tests/stability/{name}.c"))
+    Program::new(format!("tests/stability/{name}.c")).strict()
 }
 
 /// Returns a program with this library, and in double precision system libccd beside it.
@@ -18,12 +18,12 @@ pub fn program(name: &str) -> Program {
 /// Links a program of another folder so.
 pub fn beside_libccd(program: Program) -> Program {
     match Precision::CURRENT {
-        Precision::Double => program.link_ours_renamed_and_system(),
-        Precision::Single => program.flag("-DOURS_ALONE").link_ours_static(),
+        Precision::Double => program.link(Link::Renamed),
+        Precision::Single => program.flag("-DOURS_ALONE").link(Link::Static),
     }
 }
 
 /// Builds the program that prints the same bits in all runs and builds.
 pub fn determinism() -> Executable {
-    source("determinism").flag("-DOURS_ALONE").link_ours_shared().build().quiet()
+    source("determinism").flag("-DOURS_ALONE").build()
 }

@@ -21,7 +21,7 @@ run_programs! {
     known_costs: program("costs"), if cfg!(feature = "single") { &["U14"][..] } else { &[] };
     /// The callback that is wrong along the normals of its caps. (Single precision has no tilt.)
     #[cfg(not(feature = "single"))]
-    ode_cylinder: programs::source("ode_cylinder").flag("-DOURS_ALONE").link_ours_static(), [""; 0];
+    ode_cylinder: programs::source("ode_cylinder").flag("-DOURS_ALONE").link(harness::Link::Static), [""; 0];
     /// Sliding, rolling, rocking: directions, depths and contact positions.
     continuity: program("continuity"), [""; 0];
 }

@@ -4,7 +4,7 @@
 //! Tests compare.sh and replay.sh on the recorded contacts. All that the tool promises about other programs:
 //! `c-tests/lab/compare`.
 
-use crate::harness::{self, Precision, Program, fields, root};
+use crate::harness::{self, Link, Precision, Program, fields, root};
 use std::process::Command;
 
 /// Checks that this library's answers are right and libccd's are not all, and that a wrong answer is kept and repeats.
@@ -12,8 +12,8 @@ use std::process::Command;
 fn recorded_contacts_are_judged_and_a_wrong_answer_repeats() {
     let dir = tempfile::tempdir().expect("a directory");
     let keep = dir.path().to_str().expect("a path");
-    let program = Program::c("replay").source("tools/record/replay.c").link_system().without_tools().build();
-    let compared = program.compared(&["--every", "100", "--keep", keep]);
+    let program = Program::new("tools/record/replay.c").link(Link::System).without_tools().build();
+    let compared = program.compared(&["--fields", "--every", "100", "--keep", keep]);
     let counted = fields(&compared.run([root().join("c-tests/tools/record/contacts.bin")]).stdout, "counted");
     assert_eq!(counted["queries"], 2.0 * 37458.0);
     assert!(counted["judged"] > 500.0 && counted["theirs_right"] < 0.9 * counted["judged"], "{counted:?}");

@@ -3,7 +3,7 @@
 
 //! Tests the results of libccd's calls and of the extension on the recorded contact sequence. (Its truth: `lab/truth.c`.)
 
-use crate::harness::{Program, root};
+use crate::harness::{Link, Program, root};
 use std::path::PathBuf;
 
 fn recording() -> PathBuf {
@@ -11,7 +11,7 @@ fn recording() -> PathBuf {
 }
 
 fn program() -> Program {
-    Program::c("replay").source("tools/record/replay.c").flag("-pedantic")
+    Program::new("tools/record/replay.c").flag("-pedantic")
 }
 
 /// Returns how many pairs overlap, and of each method in the printed table its name and its counts: missed, false,
@@ -43,7 +43,7 @@ fn assert_right(printed: &str, methods: usize) {
 /// One binary on the system's libccd and on this library.
 #[test]
 fn replay_on_both_libraries() {
-    let system = program().link_system().build();
+    let system = program().link(Link::System).build();
     let theirs = system.run([recording()]).stdout;
     let ours = system.swapped().run([recording()]).stdout;
     let (theirs, rows) = table(&theirs);
@@ -53,6 +53,6 @@ fn replay_on_both_libraries() {
 
 #[test]
 fn replay_through_the_extension() {
-    let extension = program().flag("-DOURS_ALONE").link_ours_shared().build();
+    let extension = program().flag("-DOURS_ALONE").build();
     assert_right(&extension.run([recording()]).stdout, 9);
 }
