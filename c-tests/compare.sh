@@ -84,7 +84,7 @@ fi
 
 target=${CARGO_TARGET_DIR:-$here/../target}
 if [ -z "$library" ]; then
-    sh "$here/setup.sh" main >&2
+    sh "$here/setup.sh" compare >&2
     cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
     library=$target/release/libccd.so
 fi
@@ -97,15 +97,15 @@ work=$(cd "$target/compare" && pwd)
 build() {
     out=$1
     shift
-    [ -e "$work/$out" ] && [ -z "$(find "$here/tools/compare" "$here/harness" "$here/../include" -newer "$work/$out")" ] && return
+    [ -e "$work/$out" ] && [ -z "$(find "$here/compare.sh" "$here/tools/compare" "$here/harness" "$here/../include" -newer "$work/$out")" ] && return
     cc -O2 -Wall -Wextra -I"$here" -I"$here/../include" "$@" -o "$work/$out.$$" -lm -ldl -lpthread
     mv "$work/$out.$$" "$work/$out"
 }
 
 (
     cd "$here/tools/compare"
-    build compare.so -std=gnu99 -shared -fPIC -fexceptions -fvisibility=hidden catch.c query.c judge_query.c write_case.c preload.c
-    build screen -std=c99 summary.c
+    build compare.so -shared -fPIC -fexceptions -fvisibility=hidden catch.cpp query.c judge_query.c write_case.c preload.c -lstdc++
+    build screen summary.c
 )
 
 # --- the two libraries -----------------------------------------------------------------

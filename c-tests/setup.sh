@@ -5,6 +5,7 @@
 # Installs missing Debian packages, as root or with sudo. First reports a Rust that is too old.
 #   setup.sh        packages of the tests
 #   setup.sh main   packages of the main job
+#   setup.sh compare  of compare.sh: also a C++ compiler
 #   setup.sh check  installs nothing; prints the tests' missing packages in one line
 
 set -eu
@@ -52,7 +53,7 @@ apt_install() {
 }
 
 case $job in
-main)
+main | compare)
     oldest=$(rust_version Cargo.toml)
     from="Debian 12's or 13's rustc-web and cargo-web, Debian 13's rustc and cargo, or https://rustup.rs"
     ;;
@@ -61,7 +62,7 @@ tests | check)
     from="Debian 12's or 13's rustc-web and cargo-web, or https://rustup.rs"
     ;;
 *)
-    echo "usage: setup.sh [tests|main|check]" >&2
+    echo "usage: setup.sh [tests|main|compare|check]" >&2
     exit 2
     ;;
 esac
@@ -84,8 +85,8 @@ if command -v cc >/dev/null 2>&1; then
     echo '#include <stdio.h>' | cc -E -o /dev/null - 2>/dev/null || missing="$missing libc6-dev"
 fi
 
-if [ "$job" != main ]; then
-    want_command c++ g++
+[ "$job" = main ] || want_command c++ g++
+if [ "$job" = tests ] || [ "$job" = check ]; then
     want_command objcopy binutils
     want_command pkg-config pkg-config
     want_command cmake cmake
@@ -123,8 +124,8 @@ if [ "$job" = tests ] && command -v rustup >/dev/null 2>&1; then
         echo "setup.sh: no Rust $oldest: its test will be skipped" >&2
 fi
 
-# The main job compares with the system's libccd, if there is one.
-if [ "$job" = main ] && command -v apt-get >/dev/null 2>&1; then
+# These jobs compare with the system's libccd, if there is one.
+if [ "$job" != tests ] && command -v apt-get >/dev/null 2>&1; then
     missing=
     want_package libccd2
     if [ -n "$missing" ]; then

@@ -1,14 +1,12 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* ODE's dCollide over random pairs of every kind of geometry that it queries libccd for, judged by
- * their certified depth (pose_all of poses.h).
+/* ODE's dCollide over random pairs of every kind of geometry that it queries libccd for (pose_all of poses.h); compare.sh
+ * judges the queries.
  *
- * usage: ode_static SEED POSES asis|corrected   (POSES placed pairs of each two kinds)
- *   corrected: wrong support points of ODE's callbacks are replaced by right ones */
+ * usage: ode_static SEED POSES   (POSES placed pairs of each two kinds) */
 
 #include "engines/ode_shapes.h"
-#include "tools/compare/counts.h"
 #include "harness/identity.h"
 
 /* ODE refers to all of it while the geometry lives. */
@@ -20,44 +18,6 @@ typedef struct {
 } placed_t;
 
 static placed_t a, b;
-
-static int corrected;
-static double support_off; /* the largest error of a support value of this query, metres */
-
-/* The first query of a dCollide. */
-static struct {
-    int queries, hit;
-    double depth, length;
-} first;
-
-void compare_queried(int call, int hit, double depth, double length)
-{
-    (void)call;
-    if (first.queries++)
-        return;
-    first.hit = hit;
-    first.depth = depth;
-    first.length = length;
-}
-
-void compare_audit(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *v)
-{
-    ccd_vec3_t centre;
-    const placed_t *p;
-    const double *at;
-    double point[3];
-    if (first.queries)
-        return;
-    center(obj, &centre);
-    /* a's centre is where a is; that of a triangle is where ODE puts it */
-    at = a.body.shape.pos;
-    p = hypot(hypot(at[0] - centre.v[0], at[1] - centre.v[1]), at[2] - centre.v[2]) < 1e-12 ? &a : &b;
-    const double off = support_error(&p->body.shape, dir, v, point);
-    if (corrected && off > 1e-10 * pair_size(&a.body.shape, &b.body.shape))
-        ccdVec3Set(v, point[0], point[1], point[2]);
-    else
-        support_off = fmax(support_off, off);
-}
 
 static void geom_make(placed_t *p)
 {
@@ -93,39 +53,27 @@ static void make(void)
     geom_make(&b);
 }
 
-static void query(const pose_truth_t *pose)
+static void query(void)
 {
     dContactGeom contact;
     geom_place(&a);
     geom_place(&b);
-    support_off = 0;
-    first.queries = 0;
-    int hit = dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
-    if (!first.queries)
-        return; /* not libccd's */
-    /* ODE turns a triangle that touches a little and queries it again, four times: the
-     * first result is that of this pose. */
-    if (b.body.kind == KIND_TRIANGLE)
-        pose_judge(&a.body, &b.body, pose, support_off, first.hit, first.depth, first.length);
-    else
-        pose_judge(&a.body, &b.body, pose, support_off, hit, hit ? contact.depth : 0,
-                   hit ? dCalcVectorLength3(contact.normal) : 0);
+    dCollide(a.geom, b.geom, 1, &contact, sizeof contact);
 }
 
 int main(int argc, char **argv)
 {
     static const int kinds[] = { SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_POLYTOPE, KIND_TRIANGLE,
                                  KIND_PLATE };
-    if (argc != 4) {
-        fprintf(stderr, "usage: ode_static SEED POSES asis|corrected\n");
+    if (argc != 3) {
+        fprintf(stderr, "usage: ode_static SEED POSES\n");
         return 2;
     }
-    corrected = !strcmp(argv[3], "corrected");
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
     print_library();
     uniform_seed(strtoull(argv[1], NULL, 10));
-    pose_all(kinds, sizeof kinds / sizeof kinds[0], atol(argv[2]), &a.body, &b.body, make, query);
+    printf("poses queried %ld\n", pose_all(kinds, sizeof kinds / sizeof kinds[0], atol(argv[2]), &a.body, &b.body, make, query));
     dCloseODE();
     return 0;
 }

@@ -1,8 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Pairs of random convex bodies in poses of certified signed depth, and counts of what is wrong with
- * an engine's results for them.
+/* Pairs of random convex bodies in poses of certified signed depth.
  *
  * A pair is first placed at random so that the shapes overlap, by a depth s with
  * normal n that truth.h certifies. Then the second shape is moved along n until
@@ -15,7 +14,6 @@
 
 #include "engines/hull.h"
 #include "harness/truth.h"
-#include "harness/verdict.h"
 
 #include <stdio.h>
 
@@ -106,60 +104,6 @@ static inline void pose_at_depth(body_t *b, pose_truth_t *truth, double depth)
     truth->upper = depth;
 }
 
-/* --- counts of results --------------------------------------------------------------- */
-
-typedef struct {
-    long queries, hits, wrong[VERDICTS];
-    long off;            /* hits beyond what ccdMPRPenetration guarantees: 0.1 % and a tolerance */
-    double deepest_miss; /* overlap */
-    double excess;       /* largest part of the true depth beyond it and two tolerances */
-    double error;        /* largest, metres */
-} tally_t;
-
-static inline verdict_t tally_add(tally_t *t, const verdict_truth_t *truth, int hit, double depth, double length)
-{
-    const verdict_answer_t answer = { hit, 1, depth, length * length };
-    const verdict_t v = verdict(&answer, truth);
-    const double above = depth - fmax(truth->upper, 0), below = truth->lower - depth;
-    t->queries++;
-    t->hits += hit;
-    t->wrong[v]++;
-    if (v == VERDICT_MISSED)
-        t->deepest_miss = fmax(t->deepest_miss, truth->lower);
-    if (!hit)
-        return v;
-    if (truth->upper > 0)
-        t->excess = fmax(t->excess, (above - 2 * truth->tolerance) / truth->upper);
-    t->error = fmax(t->error, fmax(above, below));
-    t->off += !(above <= fmax(truth->tolerance, 1e-3 * truth->upper) + truth->contact_eps
-                && below <= truth->tolerance + truth->contact_eps);
-    return v;
-}
-
-static inline void tally_print(const char *line, const tally_t *t)
-{
-    const long *wrong = t->wrong;
-    printf("%s queries %ld hits %ld missed %ld spurious %ld broken %ld deep %ld unsound %ld", line, t->queries, t->hits,
-           wrong[VERDICT_MISSED], wrong[VERDICT_SPURIOUS], wrong[VERDICT_INVALID], wrong[VERDICT_DEEP], wrong[VERDICT_UNSOUND]);
-    printf(" off %ld deepest_miss %.9g excess %.9g error %.9g\n", t->off, t->deepest_miss, t->excess, t->error);
-}
-
-/* ODE's cylinder callback is wrong for directions within about 1e-15 of the axis: it normalises
- * what rounding leaves across the axis, and returns a point up to a radius off. Queries with a point that is off by more
- * than a tenth of the tolerance are about no convex shape, and counted apart: by the second tally. Points that are less off
- * make a depth uncertain by as much. */
-static tally_t tally[2];
-
-/* Computes the support point along dir; returns by how much the support value of v is off it. */
-static inline double support_error(const shape_t *s, const ccd_vec3_t *dir, const ccd_vec3_t *v, double point[3])
-{
-    static const double origin[3] = { 0, 0, 0 };
-    const double n[3] = { dir->v[0], dir->v[1], dir->v[2] };
-    truth_support(s, origin, n, point);
-    const double off[3] = { v->v[0] - point[0], v->v[1] - point[1], v->v[2] - point[2] };
-    return fabs(truth_dot3(n, off));
-}
-
 /* --- single queries of every pair of kinds -------------------------------------------- */
 
 /* Signed depths of every placed pair, in sizes, after that of the random pose. */
@@ -167,52 +111,28 @@ static const double DEPTHS[] = { 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6,
                                  -2e-9, -1e-8, -1e-7, -1e-6, -3e-6, -1e-5, -1e-3, -1e-1 };
 enum { DEPTH_COUNT = sizeof DEPTHS / sizeof DEPTHS[0] };
 
-/* FCL's and ODE's, metres. */
-static const double POSE_TOLERANCE = 1e-6;
-
-static long threw; /* queries in which FCL threw */
-
-/* Counts a result. support_off: the largest error of a support value, metres. Where a callback was wrong, none is right, and
- * what is within two tolerances of the true depth will do. */
-static inline void pose_judge(const body_t *a, const body_t *b, const pose_truth_t *pose, double support_off, int hit,
-                              double depth, double length)
+/* Calls `query` for every pose of `poses` pairs of each two kinds, and `make` for every new pair; returns the number of
+ * poses. */
+static inline long pose_all(const int *kinds, int count, long poses, body_t *a, body_t *b, void (*make)(void), void (*query)(void))
 {
-    const int invalid_support = support_off > 0.1 * POSE_TOLERANCE;
-    const double contact_eps = invalid_support ? 2 * POSE_TOLERANCE : 1e-9 * pose->size + 2 * support_off;
-    const verdict_truth_t truth = { pose->lower, pose->upper, POSE_TOLERANCE, contact_eps };
-    const verdict_t v = tally_add(&tally[invalid_support], &truth, hit, depth, length);
-    if (v != VERDICT_RIGHT && !invalid_support)
-        printf("wrong: %s %s %s, signed depth %.9g to %.9g, returned %.9g\n", KIND_NAME[a->kind], KIND_NAME[b->kind],
-               VERDICT_NAME[v], pose->lower, pose->upper, depth);
-}
-
-/* Calls `query` for every pose of `poses` pairs of each two kinds, and `make` for every new pair; prints the
- * counts. */
-static inline void pose_all(const int *kinds, int count, long poses, body_t *a, body_t *b, void (*make)(void),
-                            void (*query)(const pose_truth_t *pose))
-{
-    long queried = 0; /* pairs of kinds */
+    long queried = 0;
     for (int i = 0; i < count; i++)
-        for (int j = i; j < count; j++) {
-            const long before = tally[0].queries + tally[1].queries;
+        for (int j = i; j < count; j++)
             for (long k = 0; k < poses && (kinds[i] != KIND_TRIANGLE || kinds[j] != KIND_TRIANGLE); k++) {
                 pose_truth_t pose;
                 body_random(a, kinds[i]);
                 body_random(b, kinds[j]);
                 pose_overlapping(a, b, &pose);
                 make();
-                query(&pose);
+                query();
                 for (int d = 0; d < DEPTH_COUNT; d++)
                     if (DEPTHS[d] * pose.size < pose.upper) {
                         pose_at_depth(b, &pose, DEPTHS[d] * pose.size);
-                        query(&pose);
+                        query();
+                        queried++;
                     }
             }
-            queried += tally[0].queries + tally[1].queries > before;
-        }
-    printf("poses kinds %ld threw %ld\n", queried, threw);
-    tally_print("collide", &tally[0]);
-    tally_print("invalid_support", &tally[1]);
+    return queried;
 }
 
 #endif

@@ -163,7 +163,7 @@ pub fn on_both(program: Program) -> [Method; 2] {
 
 /// Returns a program on libccd and on this library under compare.sh, which judges one query in `every`.
 pub fn compared(program: Program, every: &str) -> [Method; 2] {
-    let program = program.flag("-rdynamic").link(Link::System).build();
+    let program = program.link(Link::System).build();
     let options = ["--fields", "--no-times", "--every", every, "--swap"];
     let [theirs, ours] = [&options[..4], &options].map(|options| program.compared(options));
     [Method::libccd("libccd", theirs), Method::ours("this library", ours)]
@@ -196,6 +196,6 @@ pub fn fcl_distance() -> [Method; 3] {
 /// Returns the same with every query judged on this library, and none on libccd.
 pub fn ours_judged(program: Program) -> [Method; 2] {
     let [_, ours] = compared(program.clone(), "1");
-    let theirs = program.flag("-rdynamic").link(Link::System).build();
+    let theirs = program.link(Link::System).build();
     [Method::libccd("libccd", theirs), ours]
 }

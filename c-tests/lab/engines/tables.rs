@@ -8,7 +8,7 @@
 
 use super::consumers::{self, CONSUMERS};
 use super::programs::{Method, Output, on_both, program, run_all};
-use super::results::{Simulation, median, range, simulate, values, wrong_of};
+use super::results::{Simulation, median, range, simulate, values};
 
 /// A column of a table: heading and cell.
 pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
@@ -26,17 +26,15 @@ pub fn markdown<T>(rows: &[T], columns: &[Column<T>]) -> String {
 
 /// Returns a row for each library.
 pub fn collide_table(title: &str, outputs: &[Output]) -> String {
-    let count = |key: &'static str| move |o: &Output| o.value(key).to_string();
+    let sum = |keys: &'static str| move |o: &Output| o.sum(keys).to_string();
     markdown(
         outputs,
         &[
             (title, &|o| o.method.to_owned()),
-            ("queries", &count("collide.queries")),
-            ("missed", &count("collide.missed")),
-            ("> 1 % too deep", &count("collide.deep")),
-            ("false, broken, unsound", &|o| (wrong_of(o, "collide") - o.value("collide.deep")).to_string()),
-            ("largest excess", &count("collide.excess")),
-            ("queries with a wrong callback", &count("invalid_support.queries")),
+            ("queries", &sum("counted.judged")),
+            ("missed", &sum("own.missed")),
+            ("> 1 % too deep", &sum("own.deep")),
+            ("false, broken, unsound", &sum("own.spurious own.broken own.unsound")),
         ],
     )
 }
@@ -107,8 +105,8 @@ pub fn fcl_costs(rounds: usize, part: usize) -> Vec<FclCost> {
 
 /// Returns the share of wrong answers, in percent of the hits and misses of overlapping pairs.
 fn wrong_percent(output: &Output) -> f64 {
-    let missed = output.value("put.missed");
-    100.0 * (wrong_of(output, "put") + missed) / (output.value("put.hits") + missed)
+    let wrong = output.sum("put.missed put.spurious put.broken put.deep put.unsound");
+    100.0 * wrong / output.sum("put.hits put.missed")
 }
 
 pub fn fcl_table(costs: &[FclCost]) -> String {

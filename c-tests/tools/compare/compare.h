@@ -12,6 +12,7 @@
 #define COMPARE_COMPARE_H
 
 #include "tools/compare/counts.h"
+#include "tools/compare/guard.h"
 
 #include <time.h>
 
@@ -62,25 +63,6 @@ static inline int is_intersect(int call) { return call_table[call].kind == KIND_
 /* Returns the tolerance that the call reads, metres; CCD_INIT's where it is invalid. */
 double query_tolerance(const query_t *q);
 
-/* --- guards (catch.c) ------------------------------------------------------------------ */
-
-/* Runs a function that may throw or jump out of itself, and returns. The tool's own queries must not
- * leave into the program. */
-typedef enum {
-    GUARD_RETURNED,
-    GUARD_THREW,  /* an exception left it, and is destroyed; destructors have run */
-    GUARD_JUMPED, /* longjmp or siglongjmp to a place outside */
-    GUARD_ENDED   /* guard_end */
-} guard_t;
-
-guard_t guard_run(void (*work)(void *), void *argument);
-
-/* Returns whether this thread is within guard_run. */
-int guard_active(void);
-
-/* Leaves the innermost guard_run. */
-void guard_end(void) __attribute__((noreturn));
-
 /* --- requests ------------------------------------------------------------------------- */
 
 /* Support samples of each object from the requests of one query, and the least support
@@ -111,7 +93,6 @@ typedef struct {
     const library_t *library;
     const query_t *q;
     samples_t *samples;      /* NULL: nothing is recorded */
-    unsigned long max_calls; /* of the callbacks, beyond which guard_end; 0: no limit */
     const ccd_vec3_t *shift; /* NULL, or a translation of obj2 */
     double tolerance;        /* of the minimum */
     double tilt;             /* of the directions that the callbacks receive, radians */
@@ -129,11 +110,6 @@ typedef struct {
 
 /* Runs a request (request_t *). What the callbacks throw passes through. */
 void request_run(void *request);
-
-/* Hook, called with every support point of the program's own queries, which it may change. Only tests
- * define it. */
-typedef void (*audit_fn)(const void *obj, ccd_center_fn center, const ccd_vec3_t *dir, ccd_vec3_t *point);
-extern audit_fn audit_support;
 
 /* --- judgement ------------------------------------------------------------------------ */
 

@@ -50,7 +50,6 @@ request_t request_of(request_kind_t kind, const library_t *library, const query_
     r.library = library;
     r.q = q;
     r.samples = samples;
-    r.max_calls = MAX_CALLS;
     r.tolerance = TRUTH_REL_TOL * query_tolerance(q);
     return r;
 }
@@ -154,11 +153,8 @@ static double inconsistency(const samples_t *samples, int most)
 /* Directions that are checked of each query, and of a query with a wrong answer. */
 enum { CHECKED = 64, ALL = MAX_SAMPLES };
 
-/* Returns whether the callbacks describe convex shapes, within the tolerance, which changes no verdict. */
-static int is_convex(const judged_t *s, int most)
-{
-    return inconsistency(s->samples, most) <= fmax(s->truth.tolerance, 10 * s->truth.contact_eps);
-}
+/* Returns the inconsistency beyond which the callbacks describe no convex shapes. */
+static double most_inconsistency(const judged_t *s) { return fmax(s->truth.tolerance, 10 * s->truth.contact_eps); }
 
 /* Returns whether two numbers are equal, or one is NaN: no output of the program. */
 static int same_number(ccd_real_t x, ccd_real_t y) { return x == y || x != x || y != y; }
@@ -329,17 +325,30 @@ static int request_answers(const compare_t *compare, judged_t *s, const answer_t
 /* How a judgement ended. */
 typedef enum { JUDGED, NO_SHAPE, THREW } judgement_t;
 
-/* Bounds the truth and judges both answers. NO_SHAPE: the callbacks contradict each other, or, checked in full, where an
- * answer is wrong. */
+/* Judges both answers; returns whether one is wrong. */
+static int judge_answers(const compare_t *compare, judged_t *s)
+{
+    int wrong = 0;
+    for (int side = 0; side < COMPARE_SIDES; side++) {
+        s->slanted[side] = s->aside[side] = 0;
+        s->verdict[side] = answer_verdict(s->q, &s->answer[side], &s->truth);
+        if (s->verdict[side] == VERDICT_RIGHT && has_depth(s->q, &s->answer[side]))
+            check_move(compare, s, side);
+        wrong |= s->verdict[side] != VERDICT_RIGHT;
+    }
+    return wrong;
+}
+
+/* Bounds the truth and judges both answers. Where one is wrong all directions are checked: callbacks that contradict each
+ * other describe no shape, or make the depth uncertain by as much. */
 static judgement_t judge(const compare_t *compare, judged_t *s)
 {
     compare_call_t *c = &compare->counts->call[s->q->call];
-    int wrong = 0;
     if (bound_truth(compare, s) != 0)
         return THREW;
     s->truth.upper = s->samples->least;
     s->truth_dir = s->samples->least_dir;
-    if (!is_convex(s, CHECKED))
+    if (inconsistency(s->samples, CHECKED) > most_inconsistency(s))
         return NO_SHAPE;
     if (s->truth.lower > s->truth.upper + s->truth.contact_eps) {
         if (s->truth.lower > s->truth.upper + s->truth.contact_eps + 2 * inconsistency(s->samples, ALL)) {
@@ -348,13 +357,14 @@ static judgement_t judge(const compare_t *compare, judged_t *s)
         } else
             s->truth.lower = s->truth.upper;
     }
-    for (int side = 0; side < COMPARE_SIDES; side++) {
-        s->verdict[side] = answer_verdict(s->q, &s->answer[side], &s->truth);
-        if (s->verdict[side] == VERDICT_RIGHT && has_depth(s->q, &s->answer[side]))
-            check_move(compare, s, side);
-        wrong |= s->verdict[side] != VERDICT_RIGHT;
+    if (judge_answers(compare, s)) {
+        const double uncertain = inconsistency(s->samples, ALL);
+        if (uncertain > most_inconsistency(s))
+            return NO_SHAPE;
+        s->truth.contact_eps += 2 * uncertain;
+        judge_answers(compare, s);
     }
-    return wrong && !is_convex(s, ALL) ? NO_SHAPE : JUDGED;
+    return JUDGED;
 }
 
 /* Replaces the samples by those of the same directions, tilted. Returns 0, or -1 where callbacks did not return. */

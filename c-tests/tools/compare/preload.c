@@ -36,7 +36,6 @@ static compare_t compare;
 static uint64_t every;
 static const library_t *base;
 static pthread_once_t once = PTHREAD_ONCE_INIT;
-static void (*queried)(int call, int hit, double depth, double length);
 
 static const char *setting(const char *name, const char *otherwise)
 {
@@ -88,8 +87,6 @@ static void start(void)
     compare.case_source = setting("CCD_COMPARE_CASE", NULL);
     base = &compare.library[compare.base];
     every = strtoull(setting("CCD_COMPARE_EVERY", "1"), NULL, 10);
-    find_symbol(RTLD_DEFAULT, "compare_audit", &audit_support);
-    find_symbol(RTLD_DEFAULT, "compare_queried", &queried);
     pthread_atfork(NULL, NULL, forked);
     if (__atomic_fetch_add(&compare.counts->processes, 1, __ATOMIC_RELAXED))
         return;
@@ -109,12 +106,6 @@ __attribute__((destructor)) static void end(void)
 {
     if (compare.counts)
         count_process_time();
-}
-
-EXPORT const compare_counts_t *compare_counts(void)
-{
-    pthread_once(&once, start);
-    return compare.counts;
 }
 
 /* --- queries ------------------------------------------------------------------------ */
@@ -157,8 +148,6 @@ static void judge(const query_t *q, uint64_t number, int code, const ccd_real_t 
     count_add(&c->hits, (uint64_t)hit);
     if (hit && q->call != CALL_SEPARATE)
         count_add(&c->broken, is_broken(depth, dir));
-    if (queried)
-        queried(q->call, hit, hit && depth ? (double)*depth : 0, hit && dir ? sqrt((double)ccdVec3Len2(dir)) : 0);
     if (!is_sampled(number))
         return;
     uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
@@ -168,27 +157,6 @@ static void judge(const query_t *q, uint64_t number, int code, const ccd_real_t 
     judge_query(&compare, q, &own);
     count_process_time();
     count_add(&compare.counts->judge_nanoseconds, clock_now(CLOCK_THREAD_CPUTIME_ID) - start);
-}
-
-/* Queries through callbacks that audit every point. */
-static int query_audited(const query_t *q, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos)
-{
-    request_t r;
-    memset(&r, 0, sizeof r);
-    r.library = base;
-    r.q = q;
-    request_run(&r);
-    if (!r.answer.hit)
-        return r.answer.code;
-    if (q->call == CALL_SEPARATE)
-        ccdVec3Scale(&r.answer.dir, r.answer.depth);
-    if (depth)
-        *depth = r.answer.depth;
-    if (dir)
-        *dir = r.answer.dir;
-    if (pos)
-        *pos = r.answer.pos;
-    return r.answer.code;
 }
 
 static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
@@ -201,7 +169,7 @@ static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd,
     if (guard_active())
         return library_call(base, call, obj1, obj2, ccd, &rest);
     uint64_t number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    int code = audit_support ? query_audited(&q, depth, dir, pos) : library_call(base, call, obj1, obj2, ccd, &rest);
+    int code = library_call(base, call, obj1, obj2, ccd, &rest);
     judge(&q, number, code, depth, dir);
     return code;
 }

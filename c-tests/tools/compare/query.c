@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-audit_fn audit_support;
-
 /* --- libraries -------------------------------------------------------------------- */
 
 int find_symbol(void *handle, const char *name, void *function)
@@ -134,12 +132,10 @@ static void recording_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t
     const object_t *o = (const object_t *)obj;
     request_t *r = o->request;
     support_sample_t sample = { r->tilt > 0 ? tilted(dir, r->tilt) : *dir, {{0}} };
-    if (r->max_calls && r->calls >= r->max_calls)
+    if (r->calls >= MAX_CALLS)
         guard_end();
     r->calls++;
     (o->which ? r->q->ccd->support2 : r->q->ccd->support1)(r->q->obj[o->which], &sample.dir, point);
-    if (audit_support && !guard_active())
-        audit_support(r->q->obj[o->which], center_of(o), &sample.dir, point);
     if (o->which && r->shift)
         ccdVec3Add(point, r->shift);
     sample.point = *point;
