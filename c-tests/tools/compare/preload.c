@@ -120,86 +120,67 @@ static int is_sampled(uint64_t number)
 }
 
 /* Reads the program's own outputs, NaN where it passes no pointer. */
-static void read_outputs(const query_t *q, int code, const ccd_real_t *depth, const ccd_vec3_t *dir, answer_t *own)
+static answer_t read_outputs(const query_t *q, int code, const call_args_t *x)
 {
     const ccd_real_t nan = (ccd_real_t)NAN;
-    memset(own, 0, sizeof *own);
-    own->code = code;
-    own->hit = is_hit(q->call, code);
-    own->depth = own->hit && depth ? *depth : nan;
-    ccdVec3Set(&own->dir, nan, nan, nan);
-    if (own->hit && dir)
-        own->dir = *dir;
+    answer_t own = {code, is_hit(q->call, code), nan, {{nan, nan, nan}}, {{0, 0, 0}}};
+    if (own.hit && x->depth)
+        own.depth = *x->depth;
+    if (own.hit && x->dir)
+        own.dir = *x->dir;
+    if (own.hit && x->dir && q->call == CALL_SEPARATE)
+        answer_by_length(&own);
+    return own;
 }
 
-static int is_broken(const ccd_real_t *depth, const ccd_vec3_t *dir)
+/* Returns whether a hit has a direction that is not unit, or a depth that is not finite, where it passes pointers to them. */
+static int is_broken(const query_t *q, const call_args_t *x)
 {
-    const double length = dir ? sqrt((double)ccdVec3Len2(dir)) : 1;
-    return !(fabs(length - 1) <= 1e-9) || (depth && !isfinite((double)*depth));
+    const int is_unit = !x->dir || fabs(sqrt((double)ccdVec3Len2(x->dir)) - 1) <= 1e-9;
+    return q->call != CALL_SEPARATE && (!is_unit || (x->depth && !isfinite((double)*x->depth)));
 }
 
 /* Counts the program's own answer and judges a share. */
-static void judge(const query_t *q, uint64_t number, int code, const ccd_real_t *depth, const ccd_vec3_t *dir)
+static void judge(const query_t *q, uint64_t number, int code, const call_args_t *x)
 {
     compare_call_t *c = &compare.counts->call[q->call];
-    const int hit = is_hit(q->call, code);
-    answer_t own;
+    const answer_t own = read_outputs(q, code, x);
     count_add(&c->returned, 1);
-    count_add(&c->hits, (uint64_t)hit);
-    if (hit && q->call != CALL_SEPARATE)
-        count_add(&c->broken, is_broken(depth, dir));
+    count_add(&c->hits, (uint64_t)own.hit);
+    count_add(&c->broken, own.hit && is_broken(q, x));
     if (!is_sampled(number))
         return;
-    uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
-    read_outputs(q, code, depth, dir, &own);
-    if (q->call == CALL_SEPARATE && own.hit && dir)
-        answer_by_length(&own);
+    const uint64_t start = clock_now(CLOCK_THREAD_CPUTIME_ID);
     judge_query(&compare, q, &own);
     count_process_time();
     count_add(&compare.counts->judge_nanoseconds, clock_now(CLOCK_THREAD_CPUTIME_ID) - start);
 }
 
-static int query(int call, const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
-                 ccd_vec3_t *pos)
+static int query(int call, const void *a, const void *b, const ccd_t *ccd, call_args_t x)
 {
-    const call_args_t rest = {.depth = depth, .dir = dir, .pos = pos};
-    const query_t q = { call, { obj1, obj2 }, ccd };
+    const query_t q = { call, { a, b }, ccd };
     pthread_once(&once, start);
     /* a nested query, of a callback that the tool called, is not the program's */
     if (guard_active())
-        return library_call(base, call, obj1, obj2, ccd, &rest);
-    uint64_t number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
-    int code = library_call(base, call, obj1, obj2, ccd, &rest);
-    judge(&q, number, code, depth, dir);
+        return library_call(base, call, a, b, ccd, &x);
+    const uint64_t number = __atomic_fetch_add(&compare.counts->call[call].queries, 1, __ATOMIC_RELAXED);
+    const int code = library_call(base, call, a, b, ccd, &x);
+    judge(&q, number, code, &x);
     return code;
 }
 
-EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
-                             ccd_vec3_t *pos)
-{
-    return query(CALL_MPR, obj1, obj2, ccd, depth, dir, pos);
-}
-
-EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_real_t *depth, ccd_vec3_t *dir,
-                             ccd_vec3_t *pos)
-{
-    return query(CALL_GJK, obj1, obj2, ccd, depth, dir, pos);
-}
-
-EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *ccd, ccd_vec3_t *sep)
-{
-    return query(CALL_SEPARATE, obj1, obj2, ccd, NULL, sep, NULL);
-}
-
-EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
-{
-    return query(CALL_MPR_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
-}
-
-EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd)
-{
-    return query(CALL_GJK_INTERSECT, obj1, obj2, ccd, NULL, NULL, NULL);
-}
+#define OBJECTS const void *a, const void *b, const ccd_t *ccd
+#define EXPORT_DEPTH(name, call) \
+    EXPORT int name(OBJECTS, ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos) \
+    { \
+        return query(call, a, b, ccd, (call_args_t){.depth = depth, .dir = dir, .pos = pos}); \
+    }
+#define EXPORT_SEPARATION(name, call) \
+    EXPORT int name(OBJECTS, ccd_vec3_t *sep) { return query(call, a, b, ccd, (call_args_t){.dir = sep}); }
+#define EXPORT_BOOLEAN(name, call) \
+    EXPORT int name(OBJECTS) { return query(call, a, b, ccd, (call_args_t){.depth = NULL}); }
+#define EXPORT_CALL(name, word, kind, traits) EXPORT_##kind(name, CALL_##word)
+LIBCCD_CALLS(EXPORT_CALL)
 
 EXPORT void __ccdSupport(const void *obj1, const void *obj2, const ccd_vec3_t *dir, const ccd_t *ccd, ccd_support_t *supp)
 {

@@ -29,11 +29,17 @@ static void add_call(compare_call_t *to, const compare_call_t *from)
 
 static double part(uint64_t n, uint64_t of) { return of ? (double)n / (double)of : 0; }
 
+/* Returns memory for a short text, which lasts for the next seven. */
+static char *short_text(void)
+{
+    static char text[8][48];
+    static int next;
+    return text[next++ % 8];
+}
+
 static const char *thousands(uint64_t n)
 {
-    static char buffer[8][32];
-    static int next;
-    char *out = buffer[next++ % 8] + 31;
+    char *out = short_text() + 47;
     int digits = 0;
     *out = '\0';
     do {
@@ -65,32 +71,29 @@ static void print_calls(compare_call_t *sum)
         printf("%s did not return: an exception or a jump out of a callback\n", thousands(sum->queries - sum->returned));
 }
 
-static void price(char *out, size_t size, double nanoseconds)
+static const char *price(double nanoseconds)
 {
-    if (nanoseconds < 1000)
-        snprintf(out, size, "%.0f ns", nanoseconds);
-    else
-        snprintf(out, size, "%.2f us", nanoseconds / 1000);
+    char *out = short_text();
+    const int is_small = nanoseconds < 1000;
+    snprintf(out, 48, "%.*f %s", is_small ? 0 : 2, is_small ? nanoseconds : nanoseconds / 1000, is_small ? "ns" : "us");
+    return out;
 }
 
 /* A query of s support points at p nanoseconds and arithmetic a takes a + s p. Both libraries take the same time
  * at the p for which these are equal: today's plus the difference of times over that of support points. Above it
  * the one that needs fewer is the faster. */
-static void break_even(const compare_call_t *c, char *out, size_t size)
+static const char *break_even(const compare_call_t *c)
 {
     const compare_side_t *theirs = &c->side[COMPARE_THEIRS], *ours = &c->side[COMPARE_OURS];
     const double now = part(all.callback_nanoseconds, all.callback_pairs);
     const double slower = part(ours->nanoseconds, c->timed) - part(theirs->nanoseconds, c->timed);
     const double fewer = 0.5 * (part(theirs->calls, c->judged) - part(ours->calls, c->judged));
     const double even = now + slower / fewer;
-    char text[32];
-    if (!c->timed)
-        *out = '\0';
-    else if (fewer != 0 && even > 0) {
-        price(text, sizeof text, even);
-        snprintf(out, size, "%s %s", fewer > 0 ? "above" : "below", text);
-    } else
-        snprintf(out, size, "%s", slower < 0 ? "always" : "never");
+    if (!c->timed || !(fewer != 0 && even > 0))
+        return !c->timed ? "" : slower < 0 ? "always" : "never";
+    char *out = short_text();
+    snprintf(out, 48, "%s %s", fewer > 0 ? "above" : "below", price(even));
+    return out;
 }
 
 static void print_side(const char *name, const compare_side_t *s, const compare_call_t *c)
@@ -104,14 +107,12 @@ static void print_side(const char *name, const compare_side_t *s, const compare_
 
 static void print_wrong(const compare_call_t *c, const char *call)
 {
-    char even[48];
     printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s  %s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um",
            "max um", "supports", "ns", "faster");
     print_side("libccd", &c->side[COMPARE_THEIRS], c);
     printf("\n");
     print_side("this library", &c->side[COMPARE_OURS], c);
-    break_even(c, even, sizeof even);
-    printf("  %s\n", even);
+    printf("  %s\n", break_even(c));
     printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged),
            part(c->minimum_nanoseconds, c->timed));
 }
@@ -119,23 +120,21 @@ static void print_wrong(const compare_call_t *c, const char *call)
 /* Prints why queries were not judged, and faults of the callbacks. */
 static void print_notes(const compare_call_t *sum)
 {
-    if (sum->no_shape)
-        printf("%s queries were about no convex shape (a callback returns a point that is not the farthest in its direction,\n"
-               "  or the centre lies outside): no answer can be right there, none was judged\n",
-               thousands(sum->no_shape));
-    if (sum->memory)
-        printf("%s queries were answered differently when repeated: callbacks with memory. The calls made for this screen may\n"
-               "  have changed the program; `--every 0` makes none\n",
-               thousands(sum->memory));
-    if (sum->threw)
-        printf("%s queries were not judged: when repeated, a callback threw or jumped, or returned NaN\n",
-               thousands(sum->threw));
-    if (sum->endless)
-        printf("%s queries were not judged: a library did not end within 100,000 calls of the callbacks\n",
-               thousands(sum->endless));
-    if (sum->contradicted)
-        printf("%s proofs of this library were wrong: a support value lies below their bound. Please report them.\n",
-               thousands(sum->contradicted));
+    const struct {
+        uint64_t count;
+        const char *text;
+    } notes[] = {
+        {sum->no_shape, "queries were about no convex shape (a callback returns a point that is not the farthest in its direction,\n"
+                        "  or the centre lies outside): no answer can be right there, none was judged"},
+        {sum->memory, "queries were answered differently when repeated: callbacks with memory. The calls made for this screen may\n"
+                      "  have changed the program; `--every 0` makes none"},
+        {sum->threw, "queries were not judged: when repeated, a callback threw or jumped, or returned NaN"},
+        {sum->endless, "queries were not judged: a library did not end within 100,000 calls of the callbacks"},
+        {sum->contradicted, "proofs of this library were wrong: a support value lies below their bound. Please report them."},
+    };
+    for (size_t i = 0; i < sizeof notes / sizeof *notes; i++)
+        if (notes[i].count)
+            printf("%s %s\n", thousands(notes[i].count), notes[i].text);
 }
 
 /* Prints which library is faster for this program, and the share of queries in its time. */
@@ -143,12 +142,10 @@ static void print_price(const compare_call_t *sum)
 {
     const compare_side_t *theirs = &sum->side[COMPARE_THEIRS], *ours = &sum->side[COMPARE_OURS];
     const double ratio = part(ours->nanoseconds, 1) / part(theirs->nanoseconds, 1);
-    char text[32];
     if (!sum->timed || !all.callback_pairs)
         return;
-    price(text, sizeof text, part(all.callback_nanoseconds, all.callback_pairs));
     printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n",
-           text, ratio < 1 ? "faster" : "slower", ratio);
+           price(part(all.callback_nanoseconds, all.callback_pairs)), ratio < 1 ? "faster" : "slower", ratio);
     if (all.process_nanoseconds > all.judge_nanoseconds) {
         const double own = (double)(all.process_nanoseconds - all.judge_nanoseconds), queries = (double)sum->queries;
         const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
