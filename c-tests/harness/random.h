@@ -94,6 +94,17 @@ static inline void rng_unit_vector(rng_t *r, double n[3])
         n[i] /= l;
 }
 
+/* Writes n random points on an ellipsoid with these half axes. */
+static inline void rng_on_ellipsoid(rng_t *r, ccd_real_t *points, int n, const double half[3])
+{
+    for (int i = 0; i < n; i++) {
+        double u[3];
+        rng_unit_vector(r, u);
+        for (int k = 0; k < 3; k++)
+            points[3 * i + k] = (ccd_real_t)(half[k] * u[k]);
+    }
+}
+
 static inline void rng_rotation(rng_t *r, double rot[9])
 {
     double q[4], l;

@@ -98,17 +98,13 @@ enum { HULL_CORNERS = 100 };
 /* Makes a shape of 5 to 50 cm with aspect ratios up to 3, turned at random. */
 static shape_t random_shape(rng_t *r, int kind)
 {
-    double rot[9], p[3], u[3], size = rng_log_uniform(r, .05, .5);
+    double rot[9], p[3], size = rng_log_uniform(r, .05, .5);
     shape_t s;
     for (int k = 0; k < 3; k++)
         p[k] = size * rng_uniform(r, .33, 1);
     if (kind == HULLS) {
         ccd_real_t *verts = (ccd_real_t *)malloc(sizeof *verts * 3 * HULL_CORNERS);
-        for (int i = 0; i < 3 * HULL_CORNERS; i++) {
-            if (i % 3 == 0)
-                rng_unit_vector(r, u);
-            verts[i] = (ccd_real_t)(p[i % 3] * u[i % 3]);
-        }
+        rng_on_ellipsoid(r, verts, HULL_CORNERS, p);
         s = shape_polytope(verts, HULL_CORNERS);
     } else {
         const int round = rng_below(r, 2) ? SHAPE_CYLINDER : SHAPE_CONE;

@@ -125,11 +125,10 @@ static inline int run(const call_t *entry, const void *a, const void *b, const c
 static inline shape_t random_shape(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, -1, -1, 0, 0, -1, -1, 0.5, 0.5, 0.5, -0.5, 0.5, -0.5};
-    double p = uniform(0.3, 1), q = uniform(0.3, 1), r = uniform(0.3, 1), rot[9];
+    double p = uniform(0.3, 1), q = uniform(0.3, 1), r = uniform(0.3, 1);
     int type = random_below(SHAPE_TYPES);
     shape_t s = type == SHAPE_POLYTOPE ? shape_polytope(corners, 7) : shape_make(type, p, q, r);
-    rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
-    shape_turn(&s, rot);
+    turn_at_random(&s);
     return s;
 }
 

@@ -30,11 +30,9 @@ static ccd_t query(double tolerance)
 /* Returns two overlapping ellipsoids. */
 static void ellipsoids(shape_t *a, shape_t *b)
 {
-    double rot[9];
     *a = shape_ellipsoid(1, 0.5, 0.3);
     *b = shape_ellipsoid(0.3, 0.6, 0.2);
-    rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
-    shape_turn(b, rot);
+    turn_at_random(b);
     shape_move(b, 0.2, 0.1, 0.1);
 }
 
@@ -74,9 +72,7 @@ static void rounding(void)
     for (int i = 0; i < 200; i++) {
         results_t results;
         shape_t a = shape_box(1, 1, 0.02), b = shape_box(0.01, 0.02, 0.03);
-        double rot[9];
-        rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
-        shape_turn(&a, rot);
+        turn_at_random(&a);
         count[status_of(call, &a, &b, &ccd, &results)]++;
         CHECK(results.penetration.depth_lower > 0, "bound %g", (double)results.penetration.depth_lower);
     }

@@ -93,12 +93,8 @@ static shape_t make_bent_face(rng_t *r, ccd_real_t *verts)
 static shape_t make_hull(rng_t *r, ccd_real_t *verts)
 {
     const int n = 5 + rng_below(r, 60);
-    const double x = random_size(r), y = random_size(r), z = random_size(r);
-    for (int i = 0; i < n; i++) {
-        double u[3];
-        rng_unit_vector(r, u);
-        set_vertex(verts + 3 * i, x * u[0], y * u[1], z * u[2]);
-    }
+    const double x = random_size(r), y = random_size(r), z = random_size(r), axis[3] = {x, y, z};
+    rng_on_ellipsoid(r, verts, n, axis);
     return shape_polytope(verts, n);
 }
 

@@ -42,15 +42,11 @@ static inline void pair_turn(rng_t *d, shape_t *s)
 /* Makes a hull of 4 to HULL_VERTICES points on an ellipsoid of the given size. */
 static inline shape_t random_hull(rng_t *d, ccd_real_t *verts, double size)
 {
-    int i, k, n = 4 + rng_below(d, HULL_VERTICES - 3);
-    double axis[3], p[3];
-    for (k = 0; k < 3; k++)
+    const int n = 4 + rng_below(d, HULL_VERTICES - 3);
+    double axis[3];
+    for (int k = 0; k < 3; k++)
         axis[k] = size * rng_uniform(d, .3, 1);
-    for (i = 0; i < n; i++) {
-        rng_unit_vector(d, p);
-        for (k = 0; k < 3; k++)
-            verts[3 * i + k] = (ccd_real_t)(axis[k] * p[k]);
-    }
+    rng_on_ellipsoid(d, verts, n, axis);
     return shape_polytope(verts, n);
 }
 

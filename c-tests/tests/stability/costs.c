@@ -1,7 +1,7 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Tests guarantees about the cost of a query: support points, bytes of stack. (call_limit in judge.h bounds
+/* Tests guarantees about the cost of a query: support points, bytes of stack. (call_limit in entries.h bounds
  * the slowest query.)
  *
  *   costs [ID]             exits with 1 where a guarantee of the table at the end is broken */
