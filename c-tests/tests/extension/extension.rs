@@ -22,7 +22,6 @@ fn one_in(under_tool: u32) -> String {
 run_programs! {
     cpp_wrapper: program("tests/extension/wrapper.cpp").strict(), NO_ARGS;
     cpp_wrapper_in_cpp20: program("tests/extension/wrapper.cpp").strict().flag("-std=c++20"), NO_ARGS;
-    faults_of_support_functions_are_detected: program("tests/extension/support_check.c").strict(), NO_ARGS;
     status_says_why_a_search_ended: program("tests/extension/status.c").strict(), NO_ARGS;
     results_from_every_kind_of_state: program("tests/extension/warm_states.c").strict(), [harness::rounds(400)];
     flat_objects_in_a_plane: program("tests/extension/planar.c").strict(), [harness::rounds(300)];

@@ -9,6 +9,7 @@
 #include "tests/contract/every_call.h"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -287,7 +288,22 @@ struct CenterOutside {
     ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x + 5, d.y, d.z}; }
     ccd::Vec3 center() const { return {}; }
 };
+struct NotFinite {
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x, d.y, d.z > CCD_REAL(0.9) ? CCD_REAL(NAN) : d.z}; }
+};
+/* A box: the direction is turned to its frame, the point is not turned back. */
+struct NotTurnedBack {
+    ccd::Vec3 support(const ccd::Vec3 &d) const
+    {
+        return {std::copysign(CCD_REAL(1), d.y), std::copysign(CCD_REAL(2), d.z), std::copysign(CCD_REAL(0.5), d.x)};
+    }
+};
+struct Changing {
+    mutable int calls;
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return ++calls > 200 ? ccd::Vec3{} : d; }
+};
 
+/* Checks each fault that ccdCheck reports, by its flag. (Finer faults and their sizes: src/minkowski/validate.rs.) */
 static void support_checks()
 {
     const auto sign = ccd::check(WrongSign{}), center = ccd::check(CenterOutside{}), valid = ccd::check(ThrowingBall{3, -1});
@@ -295,6 +311,27 @@ static void support_checks()
     CHECK(center && center.faults == CCD_CHECK_CENTER_OUTSIDE && center.center_outside > 3.9, "%u %g", center.faults,
           double(center.center_outside));
     CHECK(!valid && valid.size > 1.9 && valid.center_outside < 0, "%u %g", valid.faults, double(valid.size));
+    CHECK(ccd::check(NotFinite{}).faults == CCD_CHECK_NOT_FINITE, "not finite");
+    CHECK(ccd::check(NotTurnedBack{}).faults == CCD_CHECK_CONTRADICTS, "not turned back");
+    CHECK(ccd::check(Changing{0}).faults & CCD_CHECK_CHANGES, "changes between calls");
+
+    const shape_t box = shape_box(1, 2, 3);
+    ccd_check_t found, before;
+    memset(&found, 7, sizeof found);
+    before = found;
+    CHECK(ccdCheck(&box, nullptr, shape_center, &found) == CCD_BAD_INPUT, "no support function");
+    CHECK(same_bits(&found, &before, sizeof found), "written");
+    CHECK(ccdCheck(&box, shape_support, nullptr, nullptr) == CCD_CHECK_CENTER_MISSING, "no center, no output");
+
+    /* No shape of the tests has a fault, in any size. */
+    for (int type = 0; type < SHAPE_POLYTOPE; type++)
+        for (int scale = -6; scale <= 6; scale += 3) {
+            const double x = pow(10, scale);
+            Wrapped w{shape_make(type, x, .3 * x, 1e-3 * x)};
+            turn_at_random(&w.shape);
+            shape_move(&w.shape, 4 * x, -70 * x, x);
+            CHECK(!ccd::check(w), "type %d, size %g: %u", type, x, ccd::check(w).faults);
+        }
 }
 
 int main()
