@@ -172,8 +172,6 @@ run "simulations and FCL" "ms a step" "" <<'END'
 cargo run --release -p lab --bin engines
 cargo run --release -p lab --bin engines -- steps
 cargo run --release -p lab --bin engines -- screens
-cargo run --release -p lab --bin engines -- long
-cargo run --release -p lab --bin engines -- world
 cargo run --release -p lab --bin engines -- fcl
 cargo run --release -p lab --bin engines -- distance
 END
@@ -189,6 +187,8 @@ cargo run --release -p lab --bin campaigns -- NAME
 END
 
 elsewhere "steps of release.sh by these names; packaging; itself" <<'END'
+cargo run --release -p lab --bin engines -- long
+cargo run --release -p lab --bin engines -- world
 cargo run --release -p lab --bin campaigns -- rates
 cargo run --release -p lab --bin campaigns -- wide
 cargo run --release -p lab --bin campaigns -- worst

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Writes what is measured into the repository's pages.
+//! Tables of what is measured, and the repository's pages that have them.
 
 use crate::harness::root;
 use std::fs;
@@ -19,4 +19,12 @@ pub fn write_between_marks(page: &str, name: &str, new: &str) {
     let path = root().join(page);
     let written = fs::read_to_string(&path).and_then(|text| fs::write(&path, between_marks(&text, name, new)));
     written.unwrap_or_else(|e| panic!("{page}: {e}"));
+}
+
+/// Returns a table; `|` separates the cells of its head.
+pub fn markdown(head: &str, lines: impl IntoIterator<Item = Vec<String>>) -> String {
+    let head: Vec<_> = head.split('|').collect();
+    let start = format!("| {} |\n|{}", head.join(" | "), "---|".repeat(head.len()));
+    let lines = lines.into_iter().map(|cells| format!("\n| {} |", cells.join(" | ")));
+    std::iter::once(start).chain(lines).collect()
 }

@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use super::{OUT, results};
+use super::OUT;
 use crate::charts::peers::{self, Peers};
 use crate::harness;
 use crate::measuring::libraries::Libraries;
@@ -15,7 +15,7 @@ use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
 use crate::measuring::scene::Scene;
 use crate::measuring::{callgrind, csv};
-use crate::pages::write_between_marks;
+use crate::pages::{markdown, write_between_marks};
 
 /// Of every engine whose tolerance is not built in, in metres.
 const METHODS: [(&str, Start, f64); 3] = [
@@ -43,7 +43,7 @@ fn table(rows: &[Row]) -> String {
         ]
     });
     let head = "solver|instructions|support points|time|missed|too deep|too shallow|wrong direction";
-    results::markdown(head, lines)
+    markdown(head, lines)
 }
 
 /// Downloads what engines.sh can, measures all, and writes the table and its numbers.

@@ -10,15 +10,7 @@ use crate::measuring::ledger::Cost;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::Start;
 use crate::measuring::scene::{DEPTHS, KINDS};
-use crate::pages::between_marks;
-
-/// Returns a table; `|` separates the cells of its head.
-pub fn markdown(head: &str, lines: impl IntoIterator<Item = Vec<String>>) -> String {
-    let head: Vec<_> = head.split('|').collect();
-    let start = format!("| {} |\n|{}", head.join(" | "), "---|".repeat(head.len()));
-    let lines = lines.into_iter().map(|cells| format!("\n| {} |", cells.join(" | ")));
-    std::iter::once(start).chain(lines).collect()
-}
+use crate::pages::{between_marks, markdown};
 
 fn number(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.1}"))

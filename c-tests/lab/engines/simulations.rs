@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Programs linked to Debian's FCL, ODE, MuJoCo and DART run on this library as they run on libccd, in scenes that take
-//! minutes; the tables of `cargo run --release -p lab --bin engines` are made by the same judges.
+//! FCL and python-fcl's wheel on libccd and on this library, and what `<ccd/fcl.hpp>` costs. (Whole simulations are judged
+//! where their tables are made: `cargo run --release -p lab --bin engines -- long`, and `world`.)
 
-use crate::engines::programs::{fcl_distance, ours_judged, program, run_all};
-use crate::engines::results::swapped;
+use crate::engines::programs::{fcl_distance, run_all};
 use crate::engines::{consumers, tables};
 use crate::measuring::callgrind;
 
@@ -41,42 +40,6 @@ fn python_wheel_by_preloading() {
             assert_eq!(ours.sum("wheel.missed wheel.deep"), 0.0, "{}", ours.text);
             assert!(theirs.value("wheel.deep") > 0.0, "nothing to correct: {}", theirs.text);
         }
-    }
-}
-
-#[test]
-fn ode_pile() {
-    swapped("ODE, pile", &ours_judged(program("ode_pile.c")), 10, 1500, "32 pile").assert_passes();
-}
-
-#[test]
-fn mujoco_pile() {
-    swapped("MuJoCo, pile", &ours_judged(program("mujoco_pile.c")), 10, 1500, "30 pile").assert_passes();
-}
-
-#[test]
-fn dart_over_fcl_and_ode() {
-    let methods = ours_judged(program("dart_pile.cpp"));
-    for arguments in ["12 fcl", "12 ode"] {
-        swapped("DART", &methods, 10, 800, arguments).assert_passes();
-    }
-}
-
-/// Towers on several contacts a pair gain no more energy and sink no deeper than on libccd's one.
-#[test]
-fn towers_on_several_contacts_a_pair() {
-    let [libccd, _] = ours_judged(program("ode_pile.c"));
-    tables::world(libccd, "stack", 10, 1500, 20).assert_passes();
-}
-
-/// Towers on the one contact a pair that ODE takes from libccd, and a tower whose hulls just touch.
-#[test]
-fn towers_on_one_contact_a_pair() {
-    let methods = ours_judged(program("ode_pile.c"));
-    for arguments in ["20 stack", "6 tower"] {
-        let mut towers = swapped("ODE, towers", &methods, 2, 3000, arguments);
-        towers.judge_rest(1.0, 5e-3);
-        towers.assert_passes();
     }
 }
 

@@ -9,54 +9,29 @@
 use super::consumers::{self, CONSUMERS};
 use super::programs::{Method, Output, on_both, program, run_all};
 use super::results::{Simulation, median, range, simulate, values};
-
-/// A column of a table: heading and cell.
-pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
-
-/// Returns a Markdown table with a row for each of `rows`.
-pub fn markdown<T>(rows: &[T], columns: &[Column<T>]) -> String {
-    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let head = line(columns.iter().map(|(heading, _)| (*heading).to_owned()).collect());
-    let rule = format!("|{}\n", "---|".repeat(columns.len()));
-    let rows = rows.iter().map(|row| line(columns.iter().map(|(_, cell)| cell(row)).collect()));
-    [head, rule].into_iter().chain(rows).collect()
-}
+use crate::pages::markdown;
 
 // --- single queries -------------------------------------------------------------
 
 /// Returns a row for each library.
 pub fn collide_table(title: &str, outputs: &[Output]) -> String {
-    let sum = |keys: &'static str| move |o: &Output| o.sum(keys).to_string();
-    markdown(
-        outputs,
-        &[
-            (title, &|o| o.method.to_owned()),
-            ("queries", &sum("counted.judged")),
-            ("missed", &sum("own.missed")),
-            ("> 1 % too deep", &sum("own.deep")),
-            ("false, broken, unsound", &sum("own.spurious own.broken own.unsound")),
-        ],
-    )
+    let keys = ["counted.judged", "own.missed", "own.deep", "own.spurious own.broken own.unsound"];
+    let line = |o: &Output| [vec![o.method.to_owned()], keys.map(|keys| o.sum(keys).to_string()).into()].concat();
+    markdown(&format!("{title}|queries|missed|> 1 % too deep|false, broken, unsound"), outputs.iter().map(line))
 }
 
 /// The sets of pairs of `fcl_distance`.
 pub const DISTANCE_SETS: [&str; 3] = ["configurations", "kissing", "random"];
 
 pub fn distance_table(outputs: &[Output]) -> String {
-    let rows: Vec<_> = DISTANCE_SETS.iter().flat_map(|set| outputs.iter().map(move |output| (output, *set))).collect();
-    let count = |key: &'static str| move |(o, set): &(&Output, &str)| o.value(&format!("{set}.{key}")).to_string();
-    markdown(
-        &rows,
-        &[
-            ("pairs", &|(_, set)| (*set).to_owned()),
-            ("", &|(o, _)| o.method.to_owned()),
-            ("pairs", &count("queries")),
-            ("threw", &count("threw")),
-            ("endless", &count("endless")),
-            ("wrong", &|(o, set)| o.sum(&format!("{set}.wrong {set}.outside")).to_string()),
-            ("µs a distance", &|(o, set)| format!("{:.1}", o.value(&format!("{set}.microseconds")))),
-        ],
-    )
+    let line = |(set, o): (&str, &Output)| {
+        let count = |key: &str| o.value(&format!("{set}.{key}"));
+        let counts = [count("queries"), count("threw"), count("endless"), count("wrong") + count("outside")];
+        let time = format!("{:.1}", count("microseconds"));
+        [vec![set.to_owned(), o.method.to_owned()], counts.map(|n| n.to_string()).into(), vec![time]].concat()
+    };
+    let rows = DISTANCE_SETS.iter().flat_map(|set| outputs.iter().map(move |output| (*set, output)));
+    markdown("pairs||pairs|threw|endless|wrong|µs a distance", rows.map(line))
 }
 
 // --- FCL by use -----------------------------------------------------------------
@@ -110,19 +85,13 @@ fn wrong_percent(output: &Output) -> f64 {
 }
 
 pub fn fcl_table(costs: &[FclCost]) -> String {
-    let ratio = |method: usize| move |cost: &FclCost| format!("{:.2}", cost.ratios[method]);
-    markdown(
-        costs,
-        &[
-            ("use | bodies", &|cost| cost.row.clone()),
-            ("libccd wrong", &|cost| format!("{:.1} %", wrong_percent(&cost.judged[0]))),
-            ("here wrong", &|cost| format!("{:.1} %", wrong_percent(&cost.judged[1]))),
-            ("swap: time", &ratio(1)),
-            ("`ccd/fcl.hpp`, one contact", &ratio(2)),
-            ("up to 8", &ratio(3)),
-        ],
-    )
-    .replacen("|---|", "|---|---|", 1)
+    let line = |cost: &FclCost| {
+        let wrong = [0, 1].map(|method: usize| format!("{:.1} %", wrong_percent(&cost.judged[method])));
+        let times = cost.ratios[1..].iter().map(|ratio| format!("{ratio:.2}"));
+        [cost.row.clone()].into_iter().chain(wrong).chain(times).collect()
+    };
+    let head = "use|bodies|libccd wrong|here wrong|swap: time|`ccd/fcl.hpp`, one contact|up to 8";
+    markdown(head, costs.iter().map(line))
 }
 
 // --- whole programs -------------------------------------------------------------
@@ -141,20 +110,13 @@ fn least_of<const N: usize>(rounds: usize, methods: &[Method; N], arguments: &st
 /// Returns milliseconds of processor that a step of each consumer's program takes on either library: the
 /// least of so many rounds in which the libraries take turns.
 pub fn step_table(rounds: usize) -> String {
-    let rows = CONSUMERS.map(|(title, file, arguments, steps)| {
+    let line = |(title, file, arguments, steps): (&str, &str, &str, f64)| {
         let methods = on_both(program(file).flag("-DTIMED"));
-        let seconds = least_of(rounds, &methods, arguments, "processor.seconds");
-        (title, seconds.map(|seconds| 1000.0 * seconds / steps))
-    });
-    markdown(
-        &rows,
-        &[
-            ("program", &|(title, _)| (*title).to_owned()),
-            ("libccd, ms a step", &|(_, [theirs, _])| format!("{theirs:.3}")),
-            ("here", &|(_, [_, ours])| format!("{ours:.3}")),
-            ("ratio", &|(_, [theirs, ours])| format!("{:.2}", ours / theirs)),
-        ],
-    )
+        let [theirs, ours] =
+            least_of(rounds, &methods, arguments, "processor.seconds").map(|seconds| 1000.0 * seconds / steps);
+        vec![title.to_owned(), format!("{theirs:.3}"), format!("{ours:.3}"), format!("{:.2}", ours / theirs)]
+    };
+    markdown("program|libccd, ms a step|here|ratio", CONSUMERS.map(line))
 }
 
 /// Runs and judges an ODE scene by the three methods of [`consumers::ode_world`].
@@ -179,23 +141,23 @@ fn judge_contacts(simulation: &mut Simulation) {
 
 /// Returns a row for each simulation and method; medians of the starts but for the deepest contact of all.
 pub fn simulation_table(simulations: &[Simulation]) -> String {
-    type Row<'a> = (&'a Simulation, &'a [Output]);
-    let rows: Vec<Row> = simulations.iter().flat_map(|s| s.runs.iter().map(move |runs| (s, runs.as_slice()))).collect();
-    let sum = |(_, runs): &Row, key| values(runs, key).iter().sum::<f64>();
-    let columns: [Column<Row>; 8] = [
-        ("scene", &|(s, _)| s.scene.clone()),
-        ("starts × steps", &|(s, runs)| format!("{} × {}", runs.len(), s.steps)),
-        ("library", &|(_, runs)| runs[0].method.to_owned()),
-        ("energy gained, J", &|(_, runs)| format!("{:.3}", median(runs, "pile.gained"))),
-        ("deepest contact, mm", &|(_, runs)| format!("{:.1}", 1e3 * median(runs, "pile.deepest"))),
-        ("of all starts", &|(_, runs)| format!("{:.1}", 1e3 * range(runs, "pile.deepest").1)),
-        ("supports a query", &|row| format!("{:.1}", sum(row, "own.supports") / sum(row, "own.queries"))),
-        ("> 1 % too deep", &|row| match row.1[0].get("own.deep") {
-            None => String::new(),
-            Some(_) => format!("{} of {}", sum(row, "own.deep"), sum(row, "own.queries")),
-        }),
-    ];
-    markdown(&rows, &columns)
+    let line = |(simulation, runs): (&Simulation, &Vec<Output>)| {
+        let sum = |key| values(runs, key).iter().sum::<f64>();
+        let deep = runs[0].get("own.deep").map(|_| format!("{} of {}", sum("own.deep"), sum("own.queries")));
+        vec![
+            simulation.scene.clone(),
+            format!("{} × {}", runs.len(), simulation.steps),
+            runs[0].method.to_owned(),
+            format!("{:.3}", median(runs, "pile.gained")),
+            format!("{:.1}", 1e3 * median(runs, "pile.deepest")),
+            format!("{:.1}", 1e3 * range(runs, "pile.deepest").1),
+            format!("{:.1}", sum("own.supports") / sum("own.queries")),
+            deep.unwrap_or_default(),
+        ]
+    };
+    let head = "scene|starts × steps|library|energy gained, J|deepest contact, mm|of all starts|supports a query|\
+                > 1 % too deep";
+    markdown(head, simulations.iter().flat_map(|s| s.runs.iter().map(move |runs| (s, runs))).map(line))
 }
 
 /// Faults of a scene on either library: scene, counter and reason. Known if libccd has them in as many starts.
