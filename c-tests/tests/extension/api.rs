@@ -344,34 +344,24 @@ fn errors_name_the_argument() {
     assert_eq!(error.to_string(), "the tolerance is negative or NaN");
 }
 
+/// (`status.c` has a pair for each; the results above have those of C.)
 #[test]
-fn status_says_why_a_search_ended() {
-    assert_eq!(
-        [
-            Status::Converged,
-            Status::IterationLimit,
-            Status::SupportLimit,
-            Status::Rounding,
-            Status::InconsistentSupport,
-        ]
-        .map(|status| status as c_int),
-        [
-            CCD_STATUS_CONVERGED,
-            CCD_STATUS_ITERATION_LIMIT,
-            CCD_STATUS_SUPPORT_LIMIT,
-            CCD_STATUS_ROUNDING,
-            CCD_STATUS_INCONSISTENT_SUPPORT,
-        ]
-    );
-    let (a, b) = (rounded([0.0, 0.0, 0.01], 1.0, [0.0; 3]), rounded([0.0; 3], 0.5, [0.0; 3]));
-    for (max_iterations, status) in [(10, Status::IterationLimit), (1000, Status::SupportLimit)] {
-        let settings = Settings { max_iterations, ..Settings::default() };
-        let hit = ccd::penetration_proven(&a as Body, &b as Body, &settings, None).expect("valid input");
-        assert_eq!(hit.expect("an overlap").status, status);
-        let options = DistanceOptions::default();
-        let d = ccd::signed_distance(&a as Body, &b as Body, &settings, &options, None);
-        assert_eq!(d.expect("valid input").status, status);
-    }
+fn statuses_are_those_of_c() {
+    let in_rust = [
+        Status::Converged,
+        Status::IterationLimit,
+        Status::SupportLimit,
+        Status::Rounding,
+        Status::InconsistentSupport,
+    ];
+    let in_c = [
+        CCD_STATUS_CONVERGED,
+        CCD_STATUS_ITERATION_LIMIT,
+        CCD_STATUS_SUPPORT_LIMIT,
+        CCD_STATUS_ROUNDING,
+        CCD_STATUS_INCONSISTENT_SUPPORT,
+    ];
+    assert_eq!(in_rust.map(|status| status as c_int), in_c);
 }
 
 /// Checks that a panic of a shape leaves the query, and the state unchanged.
