@@ -55,14 +55,6 @@ static inline void body_random(body_t *b, int kind)
         b->shape = kind == KIND_PLATE ? shape_box(x, y, 0.005 * x) : shape_make(kind, x, y, z);
 }
 
-static inline void body_turn(body_t *b)
-{
-    double q[4], rot[9];
-    uniform_rotation(q);
-    rotation_quaternion(q[0], q[1], q[2], q[3], rot);
-    shape_turn(&b->shape, rot);
-}
-
 typedef struct {
     double size;         /* unit of relative tolerances */
     double lower, upper; /* bounds of the signed depth */
@@ -76,8 +68,8 @@ static inline void pose_overlapping(body_t *a, body_t *b, pose_truth_t *truth)
     do {
         const double reach = shape_reach(&a->shape) + shape_reach(&b->shape);
         double at[3];
-        body_turn(a);
-        body_turn(b);
+        turn_at_random(&a->shape);
+        turn_at_random(&b->shape);
         shape_move(&a->shape, 0, 0, 0);
         for (int i = 0; i < 3; i++)
             at[i] = uniform(-0.7, 0.7) * reach;

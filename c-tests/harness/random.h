@@ -51,6 +51,14 @@ static inline void uniform_rotation(double q[4])
         q[i] /= sqrt(length);
 }
 
+static inline void turn_at_random(shape_t *s)
+{
+    double q[4], rot[9];
+    uniform_rotation(q);
+    rotation_quaternion(q[0], q[1], q[2], q[3], rot);
+    shape_turn(s, rot);
+}
+
 /* --- a stream for each pair ------------------------------------------------------ */
 
 typedef struct {

@@ -202,7 +202,7 @@ static std::vector<object> crowd(int n, double half_width)
     for (int i = 0; i < n; i++) {
         static body_t body;
         body_random(&body, i % KINDS);
-        body_turn(&body);
+        turn_at_random(&body.shape);
         for (S &x : body.shape.pos)
             x = S(uniform(-half_width, half_width));
         objects.emplace_back(fcl_geometry(body, TRIANGLE_SHAPE), fcl_pose(body.shape));

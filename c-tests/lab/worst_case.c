@@ -54,14 +54,6 @@ static shape_t random_shape(ccd_real_t *verts)
     return shape_polytope(verts, HULL_VERTICES);
 }
 
-static void turn_at_random(shape_t *s)
-{
-    double q[4], rot[9];
-    uniform_rotation(q);
-    rotation_quaternion(q[0], q[1], q[2], q[3], rot);
-    shape_turn(s, rot);
-}
-
 /* Returns the distance of the support plane along x, or with sign -1 against it, from the centre. */
 static double reach_along_x(const shape_t *s, double sign)
 {

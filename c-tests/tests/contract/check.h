@@ -46,14 +46,6 @@ static inline ccd_vec3_t random_vec3(double size)
     return v;
 }
 
-/* Turns a shape by a random quaternion. */
-static inline void turn_at_random(shape_t *s)
-{
-    double rot[9];
-    rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), rot);
-    shape_turn(s, rot);
-}
-
 static inline int same_bits(const void *a, const void *b, size_t size)
 {
     return memcmp(a, b, size) == 0;
