@@ -58,24 +58,6 @@ static geometry fcl_shape(const shape_t &s)
     return std::make_shared<fcl::Convex<double>>(fcl_vertices(s), 1, face);
 }
 
-/* Returns a lower bound of the distance of a point from an object: over the axes and the direction to its centre. */
-static double outside(const shape_t &s, const fcl::Vector3d &p)
-{
-    static const double origin[3] = {0, 0, 0};
-    double most = -HUGE_VAL;
-    for (int i = 0; i < 7; i++) {
-        double n[3] = {p[0] - s.pos[0], p[1] - s.pos[1], p[2] - s.pos[2]}, q[3];
-        const double length = sqrt(truth_dot3(n, n));
-        for (int k = 0; k < 3; k++)
-            n[k] = i < 6 ? (k == i / 2) * (i % 2 ? 1. : -1.) : n[k] / length;
-        if (i == 6 && !(length > 0))
-            continue;
-        truth_support(&s, origin, n, q);
-        most = fmax(most, n[0] * (p[0] - q[0]) + n[1] * (p[1] - q[1]) + n[2] * (p[2] - q[2]));
-    }
-    return most;
-}
-
 /* Ends the process after so many seconds of processor; 0: never. */
 static void limit_time(long seconds)
 {
@@ -117,7 +99,8 @@ static void query(const char *name, const shape_t &a, const shape_t &b, double l
         set.wrong++;
         printf("wrong: %s: %.9g, truth %.9g to %.9g\n", name, value, -upper, -lower);
     }
-    const bool off = !(outside(a, result.nearest_points[0]) <= allowed) || !(outside(b, result.nearest_points[1]) <= allowed);
+    const bool off = is_outside(a, result.nearest_points[0], allowed, allowed / 4)
+                     || is_outside(b, result.nearest_points[1], allowed, allowed / 4);
     set.outside += off;
     if (off)
         printf("outside: %s\n", name);

@@ -63,6 +63,14 @@ static inline fcl::Transform3<ccd_real_t> fcl_pose(const shape_t &s)
     return t;
 }
 
+/* Returns whether the point is outside of the shape by more than `bound`. */
+static inline bool is_outside(const shape_t &shape, const vec &p, double bound, double width)
+{
+    shape_t point = shape_sphere(0);
+    shape_move(&point, p[0], p[1], p[2]);
+    return !(-truth_depth_within(&shape, &point, width).lower <= bound);
+}
+
 /* Returns the processor time of this thread. */
 static inline double thread_seconds()
 {

@@ -40,14 +40,6 @@ static fcl::CollisionRequest<S> contacts(std::size_t max)
 
 /* --- against exact truth -------------------------------------------------------- */
 
-/* Returns whether the point is outside of the shape by more than `bound`. */
-static bool is_outside(const shape_t &shape, const vec &p, double bound, double width)
-{
-    shape_t point = shape_sphere(0);
-    shape_move(&point, p[0], p[1], p[2]);
-    return !(-truth_depth_within(&shape, &point, width).lower <= bound);
-}
-
 /* Checks the one contact of a pair, the deepest. */
 static void check_contact(const shape_t &a, const shape_t &b, const collision &r, const pose_truth_t &truth, const char *name)
 {
