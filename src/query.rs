@@ -30,7 +30,7 @@ use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportP
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::minkowski::warm_start::{WarmKind, WarmStart};
+use crate::minkowski::warm_start::WarmStart;
 use crate::types::{Penetration, Settings, Status, Want};
 
 /// A pair of objects, and what its caller wants to know of it: the input of a query.
@@ -68,10 +68,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else
     /// the caller's first direction, else x.
+    #[inline(always)]
     pub fn cold_start(&self) -> Vec3 {
-        let from_center = self.centers.and_then(|c| unit(&-c.v));
+        let from_center = self.centers.as_ref().and_then(|c| unit(&-c.v));
         from_center
-            .or_else(|| self.first_dir.and_then(|d| unit(&d)))
+            .or_else(|| self.first_dir.as_ref().and_then(unit))
             .unwrap_or(Vec3::x())
     }
 
@@ -214,6 +215,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds the global minimum of the depth within the larger of the tolerance and 0.1 % of it, with at most
     /// [`MAX_DEFAULT_POINTS`] support points; if these do not suffice, a local search improves the depth. Assumes that
     /// the centers lie in their objects.
+    #[inline(always)]
     pub fn penetration(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
         let limits = EpaLimits::new(&self.settings, GAP_REL, MAX_DEFAULT_POINTS);
         self.minimize(self.centers.as_ref(), &limits, false, state, None)
@@ -221,6 +223,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Finds the global minimum of the depth within the tolerance. The proof uses only support points; the
     /// centers select only where the search starts.
+    #[inline(always)]
     pub fn proven(
         &self,
         state: &mut WarmStart,
@@ -261,11 +264,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let request = EpaRequest {
             center: interior,
             ray,
-            // A separating axis has been evaluated already.
-            warm: match state.kind {
-                WarmKind::Separated => WarmStart::COLD,
-                _ => *state,
-            },
             limits: *limits,
             wants_points: self.want.points || self.want.pos,
         };
@@ -285,9 +283,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Penetration, Stop> {
         let mut set = VertexSet::EMPTY;
-        let (mut hit, warm) =
-            epa::penetration::penetration(query, first, request, arena, &mut set)?;
-        *state = warm;
+        let mut hit = epa::penetration::penetration(query, first, request, arena, &mut set, state)?;
         if hit.status == Status::Converged {
             if self.want.pos {
                 hit.pos = self.contact_position(&set, &hit)?;

@@ -60,14 +60,11 @@ const ROUNDING_GAP_EPS: f64 = 32.0;
 const MIN_NEW_RAY_TURN2: f64 = 0.3;
 
 /// The input of a query besides the support functions.
-#[derive(Clone, Copy, Debug)]
 pub struct EpaRequest<'a> {
     /// The difference of the centers, which is trusted to lie in D: the interior point.
     pub center: Option<&'a SupportPoint>,
     /// The unit direction of a cold start: from an interior point through the origin.
     pub ray: Vec3,
-    /// The state of the last query; cold if the pair was separated.
-    pub warm: WarmStart,
     /// The limits of the query.
     pub limits: EpaLimits,
     /// False if the witness points are not read; they are then zero.
@@ -77,7 +74,7 @@ pub struct EpaRequest<'a> {
 /// The bounds and the witness points of the polytope or portal with the least gap so far.
 #[derive(Clone, Copy)]
 struct Proof {
-    /// The upper bound, metres; infinite before the first result.
+    /// The upper bound, metres.
     upper: f64,
     /// Its direction, unit.
     dir: Vec3,
@@ -100,14 +97,15 @@ struct Solver<'q, 'm, A, B> {
     is_warm: bool,
     /// True if a support function contradicts the plane of the result.
     is_inconsistent: bool,
-    proof: Proof,
+    /// `None` before the first result.
+    proof: Option<Proof>,
 }
 
 /// Finds the global minimum of the penetration depth, by the steps at the head of this file, without a contact position.
 /// `first`: the support point along the warm state's direction or the ray, which does not separate
 /// ([`SupportQuery::evaluate_first`]: most queries of separated objects end there, before this function's stack is in
-/// use). Without an `arena` there are only the buffers on the stack. Returns the state for the next query with the
-/// result; `set` has the vertices of the first support calls, for the contact position.
+/// use). Without an `arena` there are only the buffers on the stack. `state`: of the last query; becomes that of the hit.
+/// `set` then has the vertices of the first support calls, for the contact position.
 ///
 /// # Errors
 /// [`Stop::Separated`]: the objects are separated, or in contact within rounding. [`Stop::Fault`].
@@ -118,38 +116,39 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     request: &EpaRequest<'_>,
     mut arena: Option<&mut dyn Arena>,
     set: &mut VertexSet<SMALL_VERTICES>,
-) -> Result<(Penetration, WarmStart), Stop> {
+    state: &mut WarmStart,
+) -> Result<Penetration, Stop> {
     set.push(&query.upper.dir, first);
-    let warm = &request.warm;
-    let is_warm = warm.is_overlap();
+    let is_warm = state.is_overlap();
+    // The axis of a separated pair has been evaluated already; nothing else of its state is used.
+    let radius = if is_warm { state.radius } else { [0.0; 2] };
     // The ray is evaluated too if the warm direction is only a guess (its depth is 0), or if both objects are round, where
     // its vertex is a poor corner of a portal.
-    let is_round = warm.radius[0] * warm.radius[1] > 0.0;
-    if is_warm && (is_round || !(warm.depth > 0.0)) {
+    let is_round = radius[0] * radius[1] > 0.0;
+    if is_warm && (is_round || !(state.depth > 0.0)) {
         query.evaluate(set, &request.ray)?;
     }
     let mut solver = Solver {
         query,
         request,
-        interior: SupportPoint::default(),
-        fit: SphereFit::warm(warm.radius),
+        interior: request.center.copied().unwrap_or_default(),
+        fit: SphereFit::warm(radius),
         iterations: 0,
         is_warm,
         is_inconsistent: false,
-        proof: Proof {
-            upper: f64::INFINITY,
-            dir: Vec3::zeros(),
-            lower: 0.0,
-            points: [Vec3::zeros(); 2],
-        },
+        proof: None,
     };
-    let mut status = solver.run(set, &mut arena)?;
+    let portal = solver.run_without_polytope(set)?;
+    let (proof, mut status) = match solver.proof {
+        Some(proof) => (proof, Status::Converged),
+        None => solver.expand_from(set, portal.as_ref(), &mut arena)?,
+    };
     let Proof {
         upper: depth,
         dir,
         mut lower,
         points,
-    } = solver.proof;
+    } = proof;
     // A support plane excludes the center from D: the polytope may contain an origin that is outside.
     if request.center.is_some() && solver.query.interior.is_none() {
         solver.prove_overlap(&dir)?;
@@ -158,8 +157,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     if solver.is_inconsistent {
         (lower, status) = (0.0, Status::InconsistentSupport);
     }
-    let radius = solver.fit.confirmed_radius();
-    let hit = Penetration {
+    *state = WarmStart::hit(dir, depth, solver.fit.confirmed_radius());
+    Ok(Penetration {
         depth,
         depth_lower: lower.min(depth),
         dir,
@@ -169,25 +168,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         iterations: solver.iterations,
         status,
         ..Penetration::default()
-    };
-    Ok((hit, WarmStart::hit(dir, depth, radius)))
+    })
 }
 
 impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
-    /// Runs steps 2 to 6.
-    #[inline(always)]
-    fn run(
-        &mut self,
-        set: &mut VertexSet<SMALL_VERTICES>,
-        arena: &mut Option<&mut dyn Arena>,
-    ) -> Result<Status, Stop> {
-        let portal = self.run_without_polytope(set)?;
-        if self.proof.upper < f64::INFINITY {
-            return Ok(Status::Converged);
-        }
-        self.expand_from(set, portal.as_ref(), arena)
-    }
-
     /// Runs steps 2 to 4, and stores the proof if there is one. Returns the portal; `None` with a proof, or if none was
     /// found. Not inlined, so that its frame is released before a polytope is made.
     #[inline(never)]
@@ -197,10 +181,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     ) -> Result<Option<[Vertex; 3]>, Stop> {
         let mut ray = self.request.ray;
         let opposite = match self.request.center {
-            Some(center) => {
-                self.interior = *center;
-                None
-            }
+            Some(_) => None,
             None => Some(self.find_interior(set, &mut ray)?),
         };
         let portal = self.find_portal(set, &ray)?;
@@ -362,7 +343,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         set: &mut VertexSet<SMALL_VERTICES>,
         portal: Option<&[Vertex; 3]>,
         arena: &mut Option<&mut dyn Arena>,
-    ) -> Result<Status, Stop> {
+    ) -> Result<(Proof, Status), Stop> {
         for attempt in 0..3 {
             if attempt > 0 {
                 set.truncate(SMALL_VERTICES - START_VERTICES);
@@ -380,24 +361,27 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 Some(status) => self.compute_result(set, &surface, status)?,
                 None => self.expand_large(set, &surface, arena)?,
             };
-            if status != Status::Rounding {
-                if !(self.proof.lower > self.query.scale.contact_eps()) {
+            if let (Some(proof), true) = (self.proof, status != Status::Rounding) {
+                if !(proof.lower > self.query.scale.contact_eps()) {
                     self.prove_overlap(&dir)?;
                 }
-                return Ok(status);
+                return Ok((proof, status));
             }
         }
-        if self.proof.upper == f64::INFINITY {
-            // The depth is of the order of rounding: the hull of the points contains the origin, and has no volume.
-            let SupportPlane { dir, depth, .. } = self.query.upper;
-            self.proof = Proof {
-                upper: depth,
-                dir,
-                lower: 0.0,
-                points: self.prove_overlap(&dir)?.witnesses().into(),
-            };
-        }
-        Ok(Status::Rounding)
+        let proof = match self.proof {
+            Some(proof) => proof,
+            None => {
+                // The depth is of the order of rounding: the hull of the points contains the origin, and has no volume.
+                let SupportPlane { dir, depth, .. } = self.query.upper;
+                Proof {
+                    upper: depth,
+                    dir,
+                    lower: 0.0,
+                    points: self.prove_overlap(&dir)?.witnesses().into(),
+                }
+            }
+        };
+        Ok((proof, Status::Rounding))
     }
 
     /// Expands a polytope from a tetrahedron in the small buffers, which stay blank if it is flat. Returns as [`expand`].
@@ -526,7 +510,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
         let upper = self.query.upper;
         let gap = self.allowed_gap();
-        if upper.depth - lower < self.proof.upper - self.proof.lower {
+        let is_closer = |proof: Proof| upper.depth - lower < proof.upper - proof.lower;
+        if self.proof.is_none_or(is_closer) {
             let face = || exit_face(&upper, &interior, set, surface, closest.face, gap);
             self.store_proof(set, face, lower, gap);
         }
@@ -558,12 +543,12 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         } else {
             [Vec3::zeros(); 2]
         };
-        self.proof = Proof {
+        self.proof = Some(Proof {
             upper: upper.depth,
             dir: upper.dir,
             lower,
             points,
-        };
+        });
     }
 }
 
@@ -611,14 +596,14 @@ mod tests {
             ray: center
                 .and_then(|c| normalise_unscaled(&-c.v))
                 .unwrap_or(Vec3::x()),
-            warm: WarmStart::COLD,
             limits: EpaLimits::new(&settings, 0.0, max_points),
             wants_points: true,
         };
         let mut query = SupportQuery::new(md, center, TOLERANCE);
         let first = query.evaluate_first(&request.ray, false)?;
         let mut set = VertexSet::EMPTY;
-        let (hit, warm) = penetration(&mut query, &first, &request, arena, &mut set)?;
+        let mut warm = WarmStart::COLD;
+        let hit = penetration(&mut query, &first, &request, arena, &mut set, &mut warm)?;
         assert_eq!((warm.dir, warm.depth), (hit.dir, hit.depth));
         Ok(hit)
     }

@@ -132,10 +132,9 @@ impl<const F: usize> EpaPolytope<F> {
     /// Returns a blank polytope for points of this size, metres. See the field `ulp`.
     #[inline(always)]
     pub fn blank(size: f64) -> Self {
-        Self {
-            ulp: f64::EPSILON * size,
-            ..Self::BLANK
-        }
+        let mut blank = Self::BLANK;
+        blank.ulp = f64::EPSILON * size;
+        blank
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@ use core::ptr::null_mut;
 use super::callbacks::{QueryArgs, QueryKind};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
-use super::warm::libccd::{ccdMPRIntersectWarm, ccdMPRPenetrationWarm, libccd_penetration};
+use super::warm::libccd::{ccdMPRIntersectWarm, libccd_penetration};
 use crate::math::{Real, Vec3};
 use crate::solver::Solver;
 
@@ -67,8 +67,12 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
+    let (args, query) = (
+        QueryArgs { obj1, obj2, ccd },
+        (QueryKind::Mpr, Solver::Global),
+    );
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { ccdMPRPenetrationWarm(obj1, obj2, ccd, null_mut(), depth, dir, pos) }
+    unsafe { libccd_penetration(args, query, null_mut(), depth, dir, pos) }
 }
 
 /// Computes the globally least penetration depth, its direction and the contact position. Starts
