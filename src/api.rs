@@ -16,7 +16,7 @@ use crate::ffi::warm::NAME;
 pub use crate::math::Real;
 use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::if_overlapping;
+use crate::minkowski::support_query::{Stop, if_overlapping};
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
@@ -323,51 +323,54 @@ where
 }
 
 /// Runs `solve` with the state of `warm`, or a cold one without it, and stores the new state. A fault
-/// leaves the state unchanged.
+/// leaves the state unchanged. Returns `None` if the shapes are separated.
 fn with_state<R>(
     warm: Option<&mut Warm>,
-    solve: impl FnOnce(&mut WarmStart) -> Result<R, Fault>,
-) -> Result<R, Error> {
+    solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
+) -> Result<Option<R>, Error> {
     let mut state = warm.as_ref().map_or(WarmStart::COLD, |warm| warm.0);
-    let found = solve(&mut state)?;
+    let found = solve(&mut state);
+    state.note_separation(&found);
+    let found = if_overlapping(found)?;
     if let Some(warm) = warm {
         warm.0 = state;
     }
     Ok(found)
 }
 
-/// Returns a point that is wanted, else zero.
-fn point_if(is_wanted: bool, point: &Vec3) -> [Real; 3] {
-    if is_wanted { to_real(point) } else { [0.0; 3] }
-}
-
-/// Runs a penetration query.
-fn penetration_query<A: Shape + ?Sized, B: Shape + ?Sized>(
+/// Runs a query with a result; `None` if the shapes are separated.
+fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
     a: &A,
     b: &B,
     settings: &Settings,
     warm: Option<&mut Warm>,
     solver: Solver,
-) -> Result<Option<Penetration>, Error> {
-    let want = settings.want;
+) -> Result<Option<types::Penetration>, Error> {
     let pair = make_pair(a, b, settings)?;
-    let found = with_state(warm, |state| {
-        let found = solver.run(&pair, state, &mut OwnedBuffers::default());
-        state.note_separation(&found);
-        if_overlapping(found)
+    let mut found = with_state(warm, |state| {
+        solver.run(&pair, state, &mut OwnedBuffers::default())
     })?;
-    Ok(found.map(|hit| Penetration {
-        depth: hit.depth as Real,
-        depth_lower: lower_to_real(hit.depth_lower),
-        dir: to_real(&hit.dir),
-        normal: to_real(&hit.normal),
-        pos: point_if(want.pos, &hit.pos),
-        point1: point_if(want.points, &hit.point1),
-        point2: point_if(want.points, &hit.point2),
-        support_points: pair.difference.supports(),
-        iterations: hit.iterations,
-        status: hit.status,
-    }))
+    if let Some(hit) = &mut found {
+        hit.finish(pair.difference.supports(), pair.want);
+    }
+    Ok(found)
+}
+
+impl From<types::Penetration> for Penetration {
+    fn from(hit: types::Penetration) -> Self {
+        Penetration {
+            depth: hit.depth as Real,
+            depth_lower: lower_to_real(hit.depth_lower),
+            dir: to_real(&hit.dir),
+            normal: to_real(&hit.normal),
+            pos: to_real(&hit.pos),
+            point1: to_real(&hit.point1),
+            point2: to_real(&hit.point2),
+            support_points: hit.support_points,
+            iterations: hit.iterations,
+            status: hit.status,
+        }
+    }
 }
 
 /// Defines a penetration query by its name, its direction argument, if any, and its solver.
@@ -382,7 +385,7 @@ macro_rules! query {
             warm: Option<&mut Warm>,
         ) -> Result<Option<Penetration>, Error> {
             $(let $dir = validate_direction($dir)?;)?
-            penetration_query(a, b, settings, warm, $solver)
+            Ok(run(a, b, settings, warm, $solver)?.map(Penetration::from))
         }
     };
 }
@@ -446,12 +449,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
     let pair = make_pair(a, b, &Settings::default())?;
-    let overlap = with_state(warm, |state| {
-        let found = pair.intersect(state);
-        state.note_separation(&found);
-        if_overlapping(found)
-    })?;
-    Ok(overlap.is_some())
+    Ok(with_state(warm, |state| pair.intersect(state))?.is_some())
 }
 
 /// Computes the signed distance: the gap of shapes that are apart, minus the penetration depth of
@@ -491,22 +489,24 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     if !(margins.margin1 + margins.margin2 < f64::from(Real::MAX)) {
         return Err(Error::BadInput(cause));
     }
-    let mut pair = make_pair(a, b, settings)?;
     // A distance has no position.
-    pair.want.pos = false;
-    let d = with_state(warm, |state| {
-        pair.signed_distance(&margins, state, &mut OwnedBuffers::default())
-    })?;
     let points = settings.want.points;
+    let settings = Settings {
+        want: Want { pos: false, points },
+        ..*settings
+    };
+    // A distance always has a result.
+    let found = run(a, b, &settings, warm, Solver::Distance(margins))?.unwrap_or_default();
     Ok(Distance {
-        distance: lower_to_real(d.lower),
-        distance_upper: -lower_to_real(-d.upper),
-        normal: to_real(&d.normal),
-        point1: point_if(points, &d.point1),
-        point2: point_if(points, &d.point2),
-        support_points: pair.difference.supports(),
-        iterations: d.iterations,
-        status: d.status,
+        // Subtracted from 0, which avoids -0.0.
+        distance: lower_to_real(0.0 - found.depth),
+        distance_upper: 0.0 - lower_to_real(found.depth_lower),
+        normal: to_real(&found.normal),
+        point1: to_real(&found.point1),
+        point2: to_real(&found.point2),
+        support_points: found.support_points,
+        iterations: found.iterations,
+        status: found.status,
     })
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The penetration queries by name: what C and Rust callers choose between.
+//! The queries with a result by name: what C and Rust callers choose between.
 
 use crate::epa::buffers::Arena;
 use crate::math::Vec3;
@@ -9,9 +9,10 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::Stop;
 use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
+use crate::query::signed_distance::Margins;
 use crate::types::Penetration;
 
-/// A penetration query.
+/// A query for the depth or the signed distance.
 #[derive(Clone, Copy, Debug)]
 pub enum Solver {
     /// [`Pair::penetration`]: the global minimum within 0.1 %.
@@ -26,14 +27,17 @@ pub enum Solver {
     Planar(Vec3),
     /// [`Pair::incremental`]: the published method.
     Incremental,
+    /// [`Pair::signed_distance`] of the objects with these margins.
+    Distance(Margins),
 }
 
 impl Solver {
-    /// Runs the query from the state of the last one. [`WarmStart::note_separation`] is to follow. `arena`: used by
-    /// [`Solver::Proven`] alone.
+    /// Runs the query from the state of the last one. [`WarmStart::note_separation`] and
+    /// [`Penetration::finish`] are to follow. `arena`: used by
+    /// [`Solver::Proven`] and [`Solver::Distance`] alone.
     ///
     /// # Errors
-    /// [`Stop::Separated`]; [`Stop::Fault`]: the state is then not for use.
+    /// [`Stop::Separated`], not of [`Solver::Distance`]; [`Stop::Fault`]: the state is then not for use.
     #[inline(always)]
     pub fn run<A: SupportMap, B: SupportMap>(
         self,
@@ -41,7 +45,9 @@ impl Solver {
         state: &mut WarmStart,
         arena: &mut dyn Arena,
     ) -> Result<Penetration, Stop> {
-        pair.separate(state)?;
+        if !matches!(self, Solver::Distance(_)) {
+            pair.separate(state)?;
+        }
         match self {
             Solver::Global => pair.penetration(state),
             Solver::Proven => pair.proven(state, arena),
@@ -49,6 +55,7 @@ impl Solver {
             Solver::Along(dir) => pair.along(&dir, state),
             Solver::Planar(normal) => pair.incremental(Some(normal), state),
             Solver::Incremental => pair.incremental(None, state),
+            Solver::Distance(margins) => pair.signed_distance(&margins, state, arena),
         }
     }
 }

@@ -96,12 +96,14 @@ impl Status {
     }
 }
 
-/// An overlap: depth, direction, position.
+/// Depth, direction and position of an overlap, or of the gap of separated objects, whose depth is negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Penetration {
-    /// Metres, >= 0. Moving obj2 by `depth * dir` separates the objects.
+    /// Metres. Moving obj2 by `depth * dir` separates the objects. Negative only in a signed distance, for separated
+    /// objects: minus the lower bound of their distance.
     pub depth: f64,
-    /// Proven lower bound of the globally least depth, metres; 0 if none is proven.
+    /// Proven lower bound of the globally least depth, metres; 0 if none is proven. For separated objects minus the
+    /// upper bound of their distance.
     pub depth_lower: f64,
     /// Penetration direction, unit: obj2 moves along it.
     pub dir: Vec3,
@@ -130,6 +132,18 @@ impl Penetration {
         let along = difference.dot(&self.normal);
         let perpendicular2 = (difference - self.normal * along).norm_squared();
         (along - self.depth).abs() <= tolerance && perpendicular2 <= 2.0 * self.depth * tolerance
+    }
+
+    /// Stores the number of support points, and sets the points that are not requested to zero.
+    #[inline(always)]
+    pub fn finish(&mut self, support_points: u64, want: Want) {
+        self.support_points = support_points;
+        if !want.pos {
+            self.pos = Vec3::zeros();
+        }
+        if !want.points {
+            (self.point1, self.point2) = (Vec3::zeros(), Vec3::zeros());
+        }
     }
 
     /// Returns the middle of the witness points.

@@ -33,7 +33,7 @@ pub fn libccd_code_of(stop: &Stop) -> c_int {
     }
 }
 
-/// Runs a penetration query with the caller's state, or a cold one where `warm` is NULL, and with memory that is allocated
+/// Runs a query with the caller's state, or a cold one where `warm` is NULL, and with memory that is allocated
 /// if the query needs it. Stores the new state unless there is a fault.
 ///
 /// # Errors
@@ -57,7 +57,7 @@ pub unsafe fn run_query(
         let mut found = solver.run(&pair, &mut state, &mut buffers);
         buffers.free();
         if let Ok(hit) = &mut found {
-            hit.support_points = pair.difference.supports();
+            hit.finish(pair.difference.supports(), want);
         }
         trace::end(found.as_ref().ok());
         store_state(warm, state, &found);

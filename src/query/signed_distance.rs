@@ -13,15 +13,17 @@
 //!
 //! The state of the last query only selects where the search starts; no bound depends on it.
 //!
-//! Outputs: both bounds are valid, whatever the status, except for [`Status::InconsistentSupport`]. The points lie on
-//! the surfaces of the objects with their margins.
+//! Outputs, in the terms of a penetration: `depth` is minus the lower bound, `depth_lower` minus the upper bound of the
+//! distance, and `normal` the direction along which obj2 moves to increase it. The objects overlap if `depth` > 0; those
+//! that touch within rounding do not, and their depth is 0. Both bounds are valid, whatever the status, except for
+//! [`Status::InconsistentSupport`]. The points lie on the surfaces of the objects with their margins.
 
 use crate::epa::buffers::Arena;
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
-use crate::math::{EPSILON, Vec3, larger};
+use crate::math::{EPSILON, larger, lesser};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap};
-use crate::minkowski::support_query::{SupportQuery, if_overlapping};
+use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
 use crate::types::{Penetration, Settings, Status};
@@ -44,41 +46,20 @@ impl Margins {
     }
 }
 
-/// A signed distance with its bounds: positive for separated objects, negative for overlapping ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Distance {
-    /// Lower bound: −h(normal), metres.
-    pub lower: f64,
-    /// Upper bound, metres.
-    pub upper: f64,
-    /// Unit; moving obj2 along it increases the distance.
-    pub normal: Vec3,
-    /// Witness point on the surface of obj1 with its margin.
-    pub point1: Vec3,
-    /// Witness point on the surface of obj2 with its margin.
-    pub point2: Vec3,
-    /// Number of iterations of the solver.
-    pub iterations: u64,
-    /// True if the objects overlap. Objects that touch within rounding do not; their distance is 0.
-    pub is_hit: bool,
-    /// Why the search ended.
-    pub status: Status,
-}
-
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Computes the signed distance of the objects with their margins, from the state of the last query.
     ///
     /// # Errors
-    /// [`Fault`].
+    /// [`Stop::Fault`].
     pub fn signed_distance(
         &self,
         margins: &Margins,
         state: &mut WarmStart,
         arena: &mut dyn Arena,
-    ) -> Result<Distance, Fault> {
+    ) -> Result<Penetration, Stop> {
         if state.is_overlap() {
             if let Some(hit) = self.depth(state, arena)? {
-                return Ok(overlapping_distance(&hit, margins));
+                return Ok(with_margins(hit, margins));
             }
         }
         let (mut cores, radius, mut contact_eps) = self.find_cores(margins, state)?;
@@ -87,7 +68,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
             *state = WarmStart::towards(cores.normal);
             if let Some(hit) = self.depth(state, arena)? {
-                return Ok(overlapping_distance(&hit, margins));
+                return Ok(with_margins(hit, margins));
             }
             // The overlap test found no overlap. Use its axis, even if the support value there is positive within
             // rounding, and keep the witness points, which are rounded too.
@@ -98,9 +79,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let is_met = cores.upper <= larger(contact_eps, self.settings.tolerance);
             cores.status = Status::Rounding.unless(is_met);
         }
-        let distance = separated_distance(&cores, contact_eps, self.settings.tolerance, margins);
-        *state = WarmStart::separated(cores.normal, larger(distance.lower, 0.0), radius);
-        Ok(distance)
+        let found = separated_distance(&cores, contact_eps, self.settings.tolerance, margins);
+        *state = WarmStart::separated(cores.normal, larger(-found.depth, 0.0), radius);
+        Ok(found)
     }
 
     /// Finds the penetration depth of the cores. `None` if they are separated; the state then has the separating axis.
@@ -142,25 +123,16 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 }
 
-/// Returns the signed distance of objects with overlapping cores.
-fn overlapping_distance(hit: &Penetration, margins: &Margins) -> Distance {
-    let n = hit.normal;
-    let margin = margins.sum();
-    // Avoids returning -0.0.
-    let lower = if hit.depth + margin > 0.0 {
-        -hit.depth - margin
-    } else {
-        0.0
-    };
-    Distance {
-        lower,
-        upper: larger(-hit.depth_lower - margin, lower),
-        normal: n,
-        point1: hit.point1 + n * margins.margin1,
-        point2: hit.point2 - n * margins.margin2,
-        iterations: hit.iterations,
-        is_hit: lower < 0.0,
-        status: hit.status,
+/// Adds the margins to the result of the cores.
+fn with_margins(cores: Penetration, margins: &Margins) -> Penetration {
+    let (n, margin) = (cores.normal, margins.sum());
+    let depth = cores.depth + margin;
+    Penetration {
+        depth,
+        depth_lower: lesser(cores.depth_lower + margin, depth),
+        point1: cores.point1 + n * margins.margin1,
+        point2: cores.point2 - n * margins.margin2,
+        ..cores
     }
 }
 
@@ -170,7 +142,7 @@ fn separated_distance(
     contact_eps: f64,
     tolerance: f64,
     margins: &Margins,
-) -> Distance {
+) -> Penetration {
     let margin = margins.sum();
     // The witness points are on the line through the closest points of the cores; if the cores touch, that
     // line is rounding error, and the normal replaces it.
@@ -179,24 +151,25 @@ fn separated_distance(
     } else {
         cores.normal
     };
-    let (mut lower, mut upper) = (cores.lower - margin, cores.upper - margin);
+    let (mut depth, mut depth_lower) = (margin - cores.lower, margin - cores.upper);
     // If the cores touch within rounding, further queries cannot improve the bounds.
     let is_touch = cores.lower >= -contact_eps && cores.upper <= contact_eps;
     let mut status = cores.status.unless(is_touch);
-    if lower.abs() <= contact_eps + 4.0 * EPSILON * margin {
-        lower = 0.0;
-        upper = larger(upper, 0.0);
+    if depth.abs() <= contact_eps + 4.0 * EPSILON * margin {
+        depth = 0.0;
+        depth_lower = lesser(depth_lower, 0.0);
         // The gap is that of the clamped bounds.
-        status = status.unless(upper <= larger(contact_eps, tolerance));
+        status = status.unless(-depth_lower <= larger(contact_eps, tolerance));
     }
-    Distance {
-        lower,
-        upper: larger(upper, lower),
+    Penetration {
+        depth,
+        depth_lower: lesser(depth_lower, depth),
+        dir: cores.normal,
         normal: cores.normal,
         point1: cores.point1 + along * margins.margin1,
         point2: cores.point2 - along * margins.margin2,
         iterations: cores.iterations,
-        is_hit: lower < 0.0,
         status,
+        ..Penetration::default()
     }
 }

@@ -5,17 +5,16 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::arena::LargeBuffers;
 use super::super::callbacks::{QueryArgs, QueryKind};
-use super::super::run::code_of;
+use super::super::run::{code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
-use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, point_if};
-use super::state::{ccd_warm_t, read, store};
+use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS};
+use super::state::ccd_warm_t;
 use crate::math::{Real, lower_to_real};
-use crate::minkowski::support_query::Stop;
-use crate::query::signed_distance::{Distance, Margins};
-use crate::types::{Status, Want};
+use crate::query::signed_distance::Margins;
+use crate::solver::Solver;
+use crate::types::{Penetration, Status, Want};
 
 /// Result of ccdSignedDistance. A field that was not requested is zero.
 #[repr(C)]
@@ -42,17 +41,18 @@ pub struct ccd_distance_t {
     pub status: c_int,
 }
 
-impl ccd_distance_t {
-    fn new(distance: &Distance, want: c_uint, supports: u64) -> Self {
+impl From<Penetration> for ccd_distance_t {
+    fn from(found: Penetration) -> Self {
+        // Subtracted from 0, which avoids -0.0.
         Self {
-            distance: lower_to_real(distance.lower),
-            distance_upper: -lower_to_real(-distance.upper),
-            normal: distance.normal.into(),
-            point1: point_if(want & CCD_WANT_POINTS, &distance.point1),
-            point2: point_if(want & CCD_WANT_POINTS, &distance.point2),
-            support_points: supports as c_ulong,
-            iterations: distance.iterations as c_ulong,
-            status: distance.status as c_int,
+            distance: lower_to_real(0.0 - found.depth),
+            distance_upper: 0.0 - lower_to_real(found.depth_lower),
+            normal: found.normal.into(),
+            point1: found.point1.into(),
+            point2: found.point2.into(),
+            support_points: found.support_points as c_ulong,
+            iterations: found.iterations as c_ulong,
+            status: found.status as c_int,
         }
     }
 }
@@ -95,31 +95,22 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         margin2: margin2.into(),
         max_distance: max_distance.into(),
     };
-    // SAFETY: the caller's guarantees are those of the callees; [outputs].
-    unsafe {
-        let args = QueryArgs { obj1, obj2, ccd };
-        let wanted = Want {
-            pos: false,
-            points: want & CCD_WANT_POINTS != 0,
-        };
-        let kind = QueryKind::Distance;
-        let settings = args.settings(kind);
-        let Some(pair) = settings.and_then(|settings| args.pair(kind, settings, wanted)) else {
-            return CCD_BAD_INPUT;
-        };
-        let (mut state, mut buffers) = (read(warm), LargeBuffers::default());
-        let found = pair.signed_distance(&margins, &mut state, &mut buffers);
-        buffers.free();
-        let distance = match found {
-            Ok(distance) => distance,
-            Err(fault) => return code_of(&Stop::Fault(fault)),
-        };
-        store(warm, &state);
-        *out = ccd_distance_t::new(&distance, want, pair.difference.supports());
-        match (distance.status, distance.is_hit) {
-            (Status::Converged, true) => CCD_HIT,
-            (Status::Converged, false) => CCD_MISS,
-            _ => CCD_LIMIT,
+    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Distance);
+    let wanted = Want {
+        pos: false,
+        points: want & CCD_WANT_POINTS != 0,
+    };
+    // SAFETY: the caller's guarantees are those of the callee.
+    match unsafe { run_query(args, kind, Solver::Distance(margins), warm, wanted) } {
+        Ok(found) => {
+            // SAFETY: [outputs].
+            unsafe { *out = found.into() };
+            match found.status {
+                Status::Converged if found.depth > 0.0 => CCD_HIT,
+                Status::Converged => CCD_MISS,
+                _ => CCD_LIMIT,
+            }
         }
+        Err(stop) => code_of(&stop),
     }
 }

@@ -10,7 +10,7 @@ use super::super::run::{code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT};
 use super::state::ccd_warm_t;
-use crate::math::{Real, Vec3, lower_to_real};
+use crate::math::{Real, lower_to_real};
 use crate::solver::Solver;
 use crate::types::{Penetration, Status, Want};
 
@@ -62,24 +62,16 @@ pub struct ccd_penetration_t {
     pub status: c_int,
 }
 
-/// Returns the point where its flag is set, else zero.
-pub(in crate::ffi) fn point_if(flag: c_uint, point: &Vec3) -> ccd_vec3_t {
-    match flag {
-        0 => ccd_vec3_t::default(),
-        _ => (*point).into(),
-    }
-}
-
-impl ccd_penetration_t {
-    fn new(hit: &Penetration, want: c_uint) -> Self {
+impl From<Penetration> for ccd_penetration_t {
+    fn from(hit: Penetration) -> Self {
         Self {
             depth: hit.depth as Real,
             depth_lower: lower_to_real(hit.depth_lower),
             dir: hit.dir.into(),
             normal: hit.normal.into(),
-            pos: point_if(want & CCD_WANT_POS, &hit.pos),
-            point1: point_if(want & CCD_WANT_POINTS, &hit.point1),
-            point2: point_if(want & CCD_WANT_POINTS, &hit.point2),
+            pos: hit.pos.into(),
+            point1: hit.point1.into(),
+            point2: hit.point2.into(),
             support_points: hit.support_points as c_ulong,
             iterations: hit.iterations as c_ulong,
             status: hit.status as c_int,
@@ -111,7 +103,7 @@ pub(in crate::ffi) unsafe fn fill(
     match unsafe { run_query(args, kind, solver, warm, wanted) } {
         Ok(hit) => {
             // SAFETY: [outputs].
-            unsafe { *out = ccd_penetration_t::new(&hit, want) };
+            unsafe { *out = hit.into() };
             match hit.status {
                 Status::Converged => CCD_HIT,
                 _ => CCD_LIMIT,
