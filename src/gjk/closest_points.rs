@@ -67,7 +67,7 @@ pub struct ClosestPoints {
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
-#[inline(never)]
+#[inline(always)]
 pub fn closest_points<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
     fit: &mut SphereFit,
