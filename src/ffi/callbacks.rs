@@ -9,6 +9,7 @@ use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
 use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
 use crate::query::Pair;
+use crate::solver::Solver;
 use crate::types::{Settings, Want};
 
 /// An object whose support function is a C callback.
@@ -51,26 +52,15 @@ fn load(written: &ccd_vec3_t) -> Vec3 {
     )
 }
 
-/// Kind of a query: the callbacks that it needs and the tolerance that it reads from a [`ccd_t`].
+/// The interface of a call: the callbacks that it requires, and what it does with an invalid tolerance.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum QueryKind {
-    /// A query of libccd's MPR: requires both centers; reads mpr_tolerance.
+pub enum Interface {
+    /// libccd's MPR: requires both centers.
     Mpr,
-    /// A query of libccd's GJK: requires first_dir, calls no center; reads epa_tolerance.
+    /// libccd's GJK: requires first_dir, calls no center.
     Gjk,
-    /// A query of the extension: centers and first_dir are optional; reads mpr_tolerance.
-    Penetration,
-    /// A query of the extension: centers and first_dir are optional; reads epa_tolerance.
-    Proven,
-    /// A query of the extension: centers and first_dir are optional; reads dist_tolerance.
-    Distance,
-}
-
-impl QueryKind {
-    /// Returns whether the query is one of libccd's.
-    fn is_libccd(self) -> bool {
-        matches!(self, QueryKind::Mpr | QueryKind::Gjk)
-    }
+    /// The extension: centers and first_dir are optional; an invalid tolerance is an error.
+    Extension,
 }
 
 /// The tolerance of CCD_INIT, metres: used by libccd's calls if the caller's is negative or NaN.
@@ -100,14 +90,8 @@ impl QueryArgs {
         // SAFETY: [inputs]; only the two fields are read.
         let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
         Some((
-            Object {
-                obj: self.obj1,
-                support: support1,
-            },
-            Object {
-                obj: self.obj2,
-                support: support2,
-            },
+            Object::new(self.obj1, support1),
+            Object::new(self.obj2, support2),
         ))
     }
 
@@ -137,26 +121,26 @@ impl QueryArgs {
         Some(dir.into())
     }
 
-    /// Returns the caller's settings; `None` if `ccd` is NULL. If the tolerance is negative or NaN, libccd's calls use
-    /// [`DEFAULT_TOLERANCE`]; other queries return `None`.
+    /// Returns the caller's settings, with the tolerance that the solver reads; `None` if `ccd` is NULL. If the tolerance
+    /// is negative or NaN, libccd's calls use [`DEFAULT_TOLERANCE`]; those of the extension return `None`.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    pub unsafe fn settings(&self, kind: QueryKind) -> Option<Settings> {
+    pub unsafe fn settings(&self, interface: Interface, solver: &Solver) -> Option<Settings> {
         if self.ccd.is_null() {
             return None;
         }
         // SAFETY: [inputs]; only the fields named are read.
         unsafe {
-            let mut tolerance = match kind {
-                QueryKind::Mpr | QueryKind::Penetration => (*self.ccd).mpr_tolerance,
-                QueryKind::Gjk | QueryKind::Proven => (*self.ccd).epa_tolerance,
-                QueryKind::Distance => (*self.ccd).dist_tolerance,
+            let mut tolerance = match solver {
+                Solver::Proven => (*self.ccd).epa_tolerance,
+                Solver::Distance(_) => (*self.ccd).dist_tolerance,
+                _ => (*self.ccd).mpr_tolerance,
             };
             // Negated, so that NaN counts as negative.
             if !(tolerance >= 0.0) {
-                if !kind.is_libccd() {
+                if interface == Interface::Extension {
                     return None;
                 }
                 tolerance = DEFAULT_TOLERANCE;
@@ -171,7 +155,7 @@ impl QueryArgs {
         }
     }
 
-    /// Returns the pair with its centers or first direction; `None` if `ccd` or a callback that the query requires is
+    /// Returns the pair with its centers or first direction; `None` if `ccd` or a callback that the call requires is
     /// NULL, or a center is not finite.
     ///
     /// # Safety
@@ -179,27 +163,22 @@ impl QueryArgs {
     #[inline(always)]
     pub unsafe fn pair(
         &self,
-        kind: QueryKind,
+        interface: Interface,
         settings: Settings,
         want: Want,
     ) -> Option<Pair<Object, Object>> {
         // SAFETY: the caller's guarantees are those of the callees.
         unsafe {
             let (obj1, obj2) = self.objects()?;
-            let centers = match kind {
-                QueryKind::Gjk => None,
-                _ => self.center(),
+            let (centers, first_dir) = match interface {
+                Interface::Mpr => (Some(self.center()?), None),
+                Interface::Gjk => (None, Some(self.first_dir()?)),
+                Interface::Extension => match self.center() {
+                    None => (None, self.first_dir()),
+                    centers => (centers, None),
+                },
             };
-            if centers.is_some_and(|c| !c.v.sum().is_finite())
-                || kind == QueryKind::Mpr && centers.is_none()
-            {
-                return None;
-            }
-            let first_dir = match centers {
-                Some(_) => None,
-                None => self.first_dir(),
-            };
-            if kind == QueryKind::Gjk && first_dir.is_none() {
+            if centers.is_some_and(|c| !c.v.sum().is_finite()) {
                 return None;
             }
             Some(Pair {

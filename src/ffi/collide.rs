@@ -6,12 +6,11 @@
 use core::ffi::{c_int, c_void};
 use core::ptr::null_mut;
 
-use super::callbacks::{QueryArgs, QueryKind};
+use super::callbacks::{Interface, QueryArgs};
 use super::types::{ccd_t, ccd_vec3_t};
 use super::warm::intersect::intersect;
 use super::warm::libccd::{ccdMPRIntersectWarm, libccd_penetration};
 use crate::math::{Real, Vec3};
-use crate::solver::Solver;
 
 /// Reports whether the objects overlap. Starts from the centers, which must lie in their objects.
 ///
@@ -40,9 +39,8 @@ pub unsafe extern "C-unwind" fn ccdGJKIntersect(
     obj2: *const c_void,
     ccd: *const ccd_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Gjk);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { intersect(args, kind, null_mut()) }
+    unsafe { intersect(QueryArgs { obj1, obj2, ccd }, Interface::Gjk, null_mut()) }
 }
 
 /// Computes penetration depth, direction and contact position. Starts from the centers, which must
@@ -67,12 +65,9 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    let (args, query) = (
-        QueryArgs { obj1, obj2, ccd },
-        (QueryKind::Mpr, Solver::Global),
-    );
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { libccd_penetration(args, query, null_mut(), depth, dir, pos) }
+    unsafe { libccd_penetration(args, Interface::Mpr, null_mut(), depth, dir, pos) }
 }
 
 /// Computes the globally least penetration depth, its direction and the contact position. Starts
@@ -96,12 +91,9 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    let (args, query) = (
-        QueryArgs { obj1, obj2, ccd },
-        (QueryKind::Gjk, Solver::Proven),
-    );
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { libccd_penetration(args, query, null_mut(), depth, dir, pos) }
+    unsafe { libccd_penetration(args, Interface::Gjk, null_mut(), depth, dir, pos) }
 }
 
 /// Computes the shortest translation of obj2 that separates the objects: `sep` = depth * dir, metres;

@@ -8,7 +8,7 @@
 
 use core::ffi::{c_int, c_uint, c_void};
 
-use super::callbacks::{QueryArgs, QueryKind};
+use super::callbacks::QueryArgs;
 use super::types::ccd_t;
 use super::warm::penetration::{ccd_penetration_t, fill};
 use super::warm::state::ccd_warm_t;
@@ -32,7 +32,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationIncremental(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(args, kind, Solver::Incremental, warm, want, out) }
+    unsafe { fill(args, Solver::Incremental, warm, want, out) }
 }

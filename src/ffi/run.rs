@@ -6,7 +6,7 @@
 use core::ffi::c_int;
 
 use super::arena::LargeBuffers;
-use super::callbacks::{QueryArgs, QueryKind};
+use super::callbacks::{Interface, QueryArgs};
 use super::warm::codes::{CCD_BAD_INPUT, CCD_MISS, CCD_NO_MEMORY};
 use super::warm::state::{ccd_warm_t, read, store};
 use crate::minkowski::support::Fault;
@@ -44,15 +44,17 @@ pub fn libccd_code_of(stop: &Stop) -> c_int {
 #[inline(always)]
 pub unsafe fn run_query(
     args: QueryArgs,
-    kind: QueryKind,
+    interface: Interface,
     solver: Solver,
     warm: *mut ccd_warm_t,
     want: Want,
 ) -> Result<Penetration, Stop> {
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let settings = args.settings(kind).ok_or(Fault::BadInput)?;
-        let pair = args.pair(kind, settings, want).ok_or(Fault::BadInput)?;
+        let settings = args.settings(interface, &solver).ok_or(Fault::BadInput)?;
+        let pair = args
+            .pair(interface, settings, want)
+            .ok_or(Fault::BadInput)?;
         let (mut state, mut buffers) = (read(warm), LargeBuffers::default());
         let mut found = solver.run(&pair, &mut state, &mut buffers);
         buffers.free();

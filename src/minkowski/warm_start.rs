@@ -30,7 +30,7 @@ pub enum WarmKind {
 }
 
 /// The warm start state of a pair.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WarmStart {
     /// Direction of the last result, unit; zero in a cold state.
     pub dir: Vec3,
@@ -46,12 +46,6 @@ pub struct WarmStart {
 /// 4 ulps.
 const MAX_UNIT_ERROR: f64 = 4.0 * EPSILON;
 
-impl Default for WarmStart {
-    fn default() -> Self {
-        Self::COLD
-    }
-}
-
 impl WarmStart {
     /// Number of reals in a packed state.
     pub const REALS: usize = 6;
@@ -66,11 +60,7 @@ impl WarmStart {
 
     /// Makes the state of an overlap with this penetration direction, unit.
     pub fn towards(dir: Vec3) -> Self {
-        Self {
-            dir,
-            kind: WarmKind::Overlap,
-            ..Self::COLD
-        }
+        Self::hit(dir, 0.0, [0.0; 2])
     }
 
     /// Makes a state from a guess of the penetration direction, of any length; cold if that is zero or not

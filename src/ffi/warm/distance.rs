@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::callbacks::{Interface, QueryArgs};
 use super::super::run::{code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
@@ -95,13 +95,21 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
         margin2: margin2.into(),
         max_distance: max_distance.into(),
     };
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Distance);
+    let args = QueryArgs { obj1, obj2, ccd };
     let wanted = Want {
         pos: false,
         points: want & CCD_WANT_POINTS != 0,
     };
     // SAFETY: the caller's guarantees are those of the callee.
-    match unsafe { run_query(args, kind, Solver::Distance(margins), warm, wanted) } {
+    match unsafe {
+        run_query(
+            args,
+            Interface::Extension,
+            Solver::Distance(margins),
+            warm,
+            wanted,
+        )
+    } {
         Ok(found) => {
             // SAFETY: [outputs].
             unsafe { *out = found.into() };

@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::callbacks::{Interface, QueryArgs};
 use super::super::run::store_state;
 use super::super::types::ccd_t;
 use super::state::{ccd_warm_t, read};
@@ -17,12 +17,12 @@ use crate::types::{Settings, Want};
 /// \[inputs\] and \[outputs\] of the module contract.
 pub(in crate::ffi) unsafe fn intersect(
     args: QueryArgs,
-    kind: QueryKind,
+    interface: Interface,
     warm: *mut ccd_warm_t,
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let Some(pair) = args.pair(kind, Settings::UNREAD, Want::NOTHING) else {
+        let Some(pair) = args.pair(interface, Settings::UNREAD, Want::NOTHING) else {
             return 0;
         };
         let mut state = read(warm);
@@ -48,7 +48,6 @@ pub unsafe extern "C-unwind" fn ccdIntersect(
     ccd: *const ccd_t,
     warm: *mut ccd_warm_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { intersect(args, kind, warm) }
+    unsafe { intersect(QueryArgs { obj1, obj2, ccd }, Interface::Extension, warm) }
 }

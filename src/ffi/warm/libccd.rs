@@ -6,7 +6,7 @@
 
 use core::ffi::{c_int, c_void};
 
-use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::callbacks::{Interface, QueryArgs};
 use super::super::run::{libccd_code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::intersect::intersect;
@@ -15,26 +15,31 @@ use crate::math::Real;
 use crate::solver::Solver;
 use crate::types::Want;
 
-/// Runs a penetration query of libccd and writes those outputs that are not NULL. Returns libccd's code.
+/// Runs the penetration query of one of libccd's interfaces and writes those outputs that are not NULL. Returns libccd's
+/// code.
 ///
 /// # Safety
 /// As [`run_query`].
 #[inline(always)]
 pub(in crate::ffi) unsafe fn libccd_penetration(
     args: QueryArgs,
-    (kind, solver): (QueryKind, Solver),
+    interface: Interface,
     warm: *mut ccd_warm_t,
     depth: *mut Real,
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
+    let solver = match interface {
+        Interface::Gjk => Solver::Proven,
+        _ => Solver::Global,
+    };
     let want = Want {
         pos: !pos.is_null(),
         points: false,
     };
     // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
-        let hit = match run_query(args, kind, solver, warm, want) {
+        let hit = match run_query(args, interface, solver, warm, want) {
             Ok(hit) => hit,
             Err(stop) => return libccd_code_of(&stop),
         };
@@ -70,12 +75,9 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetrationWarm(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    let (args, query) = (
-        QueryArgs { obj1, obj2, ccd },
-        (QueryKind::Mpr, Solver::Global),
-    );
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { libccd_penetration(args, query, warm, depth, dir, pos) }
+    unsafe { libccd_penetration(args, Interface::Mpr, warm, depth, dir, pos) }
 }
 
 /// Reports whether the objects overlap as ccdMPRIntersect does, with a state.
@@ -93,5 +95,5 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersectWarm(
     warm: *mut ccd_warm_t,
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { intersect(QueryArgs { obj1, obj2, ccd }, QueryKind::Mpr, warm) }
+    unsafe { intersect(QueryArgs { obj1, obj2, ccd }, Interface::Mpr, warm) }
 }

@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::callbacks::{Interface, QueryArgs};
 use super::super::run::{code_of, run_query};
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT};
@@ -86,7 +86,6 @@ impl From<Penetration> for ccd_penetration_t {
 #[inline(always)]
 pub(in crate::ffi) unsafe fn fill(
     args: QueryArgs,
-    kind: QueryKind,
     solver: Solver,
     warm: *mut ccd_warm_t,
     want: c_uint,
@@ -100,7 +99,7 @@ pub(in crate::ffi) unsafe fn fill(
         points: want & CCD_WANT_POINTS != 0,
     };
     // SAFETY: the caller's guarantees are those of the callee.
-    match unsafe { run_query(args, kind, solver, warm, wanted) } {
+    match unsafe { run_query(args, Interface::Extension, solver, warm, wanted) } {
         Ok(hit) => {
             // SAFETY: [outputs].
             unsafe { *out = hit.into() };
@@ -134,7 +133,7 @@ pub unsafe extern "C-unwind" fn ccdPenetration(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(args, kind, Solver::Global, warm, want, out) }
+    unsafe { fill(args, Solver::Global, warm, want, out) }
 }

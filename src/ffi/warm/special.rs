@@ -5,7 +5,7 @@
 
 use core::ffi::{c_int, c_uint, c_void};
 
-use super::super::callbacks::{QueryArgs, QueryKind};
+use super::super::callbacks::QueryArgs;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::penetration::{ccd_penetration_t, fill};
@@ -31,9 +31,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(args, kind, Solver::Local, warm, want, out) }
+    unsafe { fill(args, Solver::Local, warm, want, out) }
 }
 
 /// Computes the globally least penetration depth with a certificate: depth - depth_lower <=
@@ -54,9 +54,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationProven(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Proven);
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { fill(args, kind, Solver::Proven, warm, want, out) }
+    unsafe { fill(args, Solver::Proven, warm, want, out) }
 }
 
 /// Computes the directional penetration depth: the least distance by which obj2 must move along
@@ -78,11 +78,11 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
         match unit_of(dir) {
-            Some(dir) => fill(args, kind, Solver::Along(dir), warm, want, out),
+            Some(dir) => fill(args, Solver::Along(dir), warm, want, out),
             None => CCD_BAD_INPUT,
         }
     }
@@ -107,11 +107,11 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
     want: c_uint,
     out: *mut ccd_penetration_t,
 ) -> c_int {
-    let (args, kind) = (QueryArgs { obj1, obj2, ccd }, QueryKind::Penetration);
+    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
         match unit_of(plane_normal) {
-            Some(normal) => fill(args, kind, Solver::Planar(normal), warm, want, out),
+            Some(normal) => fill(args, Solver::Planar(normal), warm, want, out),
             None => CCD_BAD_INPUT,
         }
     }
