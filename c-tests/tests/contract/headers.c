@@ -3,7 +3,7 @@
 
 /* Prints the values of every macro and inline function of the headers, for random and special numbers, bit
  * for bit. Compiled with libccd's headers and with this library's, as C99 and C++11: the driver compares the
- * output, and checks that no name is missing. (src/ffi/types.rs asserts the layouts.) */
+ * output, and checks that no name is missing. (A test in src/ffi/types.rs asserts the layouts.) */
 
 #include <ccd/ccd.h>
 #include <ccd/ccd_export.h>
