@@ -68,18 +68,15 @@ pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     pt: *mut ccd_pt_t,
     v: *const ccd_support_t,
 ) -> *mut ccd_pt_vertex_t {
-    let vertex: *mut ccd_pt_vertex_t = allocate();
-    if vertex.is_null() {
-        return vertex;
-    }
-    // SAFETY: [polytope], [inputs] for v, and `vertex` is a new block of its size ([heap]).
+    // SAFETY: [inputs], [polytope].
     unsafe {
-        (*vertex).id = 0;
-        (*vertex).v = *v;
-        list_init(&raw mut (*vertex).edges);
-        insert(pt, &raw mut (*vertex).el, CCD_PT_VERTEX);
+        let list = &raw mut (*pt).vertices;
+        add(pt, list, CCD_PT_VERTEX, |vertex: *mut ccd_pt_vertex_t| {
+            (*vertex).id = 0;
+            (*vertex).v = *v;
+            list_init(&raw mut (*vertex).edges);
+        })
     }
-    vertex
 }
 
 /// Adds the edge between two vertices and returns it; NULL when either is NULL or malloc fails.
@@ -92,19 +89,16 @@ pub unsafe extern "C-unwind" fn ccdPtAddEdge(
     if v1.is_null() || v2.is_null() {
         return null_mut();
     }
-    let edge: *mut ccd_pt_edge_t = allocate();
-    if edge.is_null() {
-        return edge;
-    }
-    // SAFETY: [polytope], and `edge` is a new block of its size.
+    // SAFETY: [polytope].
     unsafe {
-        (*edge).vertex = [v1, v2];
-        (*edge).faces = [null_mut(); 2];
-        list_append(&raw mut (*v1).edges, &raw mut (*edge).vertex_list[0]);
-        list_append(&raw mut (*v2).edges, &raw mut (*edge).vertex_list[1]);
-        insert(pt, &raw mut (*edge).el, CCD_PT_EDGE);
+        let list = &raw mut (*pt).edges;
+        add(pt, list, CCD_PT_EDGE, |edge: *mut ccd_pt_edge_t| {
+            (*edge).vertex = [v1, v2];
+            (*edge).faces = [null_mut(); 2];
+            list_append(&raw mut (*v1).edges, &raw mut (*edge).vertex_list[0]);
+            list_append(&raw mut (*v2).edges, &raw mut (*edge).vertex_list[1]);
+        })
     }
-    edge
 }
 
 /// Adds the face between three edges and returns it; NULL when any is NULL or malloc fails.
@@ -118,20 +112,17 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
     if e1.is_null() || e2.is_null() || e3.is_null() {
         return null_mut();
     }
-    let face: *mut ccd_pt_face_t = allocate();
-    if face.is_null() {
-        return face;
-    }
-    // SAFETY: [polytope], and `face` is a new block of its size.
+    // SAFETY: [polytope].
     unsafe {
-        (*face).edge = [e1, e2, e3];
-        for edge in [e1, e2, e3] {
-            let free_side = usize::from(!(*edge).faces[0].is_null());
-            (*edge).faces[free_side] = face;
-        }
-        insert(pt, &raw mut (*face).el, CCD_PT_FACE);
+        let list = &raw mut (*pt).faces;
+        add(pt, list, CCD_PT_FACE, |face: *mut ccd_pt_face_t| {
+            (*face).edge = [e1, e2, e3];
+            for edge in [e1, e2, e3] {
+                let free_side = usize::from(!(*edge).faces[0].is_null());
+                (*edge).faces[free_side] = face;
+            }
+        })
     }
-    face
 }
 
 /// Recomputes distance and witness of every element; leaves `nearest` unchanged.
@@ -216,13 +207,6 @@ unsafe extern "C" {
     fn fprintf(file: *mut FILE, format: *const c_char, ...) -> c_int;
 }
 
-/// Allocates an uninitialised node; NULL when malloc fails.
-#[inline(always)]
-fn allocate<T>() -> *mut T {
-    // SAFETY: malloc may be called with any size; its blocks are aligned for any node.
-    unsafe { malloc(size_of::<T>()) }.cast()
-}
-
 /// Unlinks an element from the polytope's list and frees it.
 unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     // SAFETY: [polytope]; its elements are blocks of malloc.
@@ -248,21 +232,26 @@ unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
     }
 }
 
-/// Initialises the common part of a new element, links it and updates `nearest`.
+/// Allocates an element, fills its own part by `fill`, links it and updates `nearest`. Returns NULL when malloc fails.
 #[inline(always)]
-unsafe fn insert(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t, kind: c_int) {
-    // SAFETY: [polytope].
+unsafe fn add<T>(
+    pt: *mut ccd_pt_t,
+    list: *mut ccd_list_t,
+    kind: c_int,
+    fill: impl FnOnce(*mut T),
+) -> *mut T {
+    // SAFETY: [heap], [polytope]; a T begins with a ccd_pt_el_t.
     unsafe {
-        (*element).kind = kind;
-        compute_distance(element);
-        let [vertices, edges, faces] = lists(pt);
-        let list = match kind {
-            CCD_PT_VERTEX => vertices,
-            CCD_PT_EDGE => edges,
-            _ => faces,
-        };
-        list_append(list, &raw mut (*element).list);
-        update_nearest(pt, element);
+        let node: *mut T = malloc(size_of::<T>()).cast();
+        if !node.is_null() {
+            fill(node);
+            let element: *mut ccd_pt_el_t = node.cast();
+            (*element).kind = kind;
+            compute_distance(element);
+            list_append(list, &raw mut (*element).list);
+            update_nearest(pt, element);
+        }
+        node
     }
 }
 

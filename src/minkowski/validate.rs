@@ -13,7 +13,7 @@
 //! Outputs. With [`Check::not_finite`] nothing else is computed except `dir`, the direction of the point (zero if
 //! the center is not finite). With [`Check::opposite`] the center is not tested.
 
-use crate::math::{EPSILON, Vec3, larger, max_abs, perpendicular};
+use crate::math::{EPSILON, Vec3, larger, lesser, max_abs, perpendicular};
 use crate::minkowski::support::SupportMap;
 
 /// The number of directions: those of a hemisphere, their opposites, and the former tilted.
@@ -65,61 +65,51 @@ impl Check {
     }
 }
 
-/// Returns direction `i` of [`NUM_DIRECTIONS`], unit.
-fn direction(i: usize) -> Vec3 {
-    let n = hemisphere_direction(i % NUM_HEMISPHERE);
-    match i / NUM_HEMISPHERE {
-        0 => n,
-        1 => -n,
-        _ => {
-            let tilted = n + perpendicular(&n) * TILT_RAD;
-            tilted / tilted.norm()
-        }
-    }
-}
+/// The directions of a check, unit, or the points along them.
+type Directions = [Vec3; NUM_DIRECTIONS];
 
-/// Returns direction `i` of [`NUM_HEMISPHERE`], unit.
-fn hemisphere_direction(i: usize) -> Vec3 {
-    match i {
-        0 => Vec3::x(),
-        1 => Vec3::y(),
-        2 => Vec3::z(),
-        _ => {
-            // Equal steps in height; the golden angle from each to the next.
-            let z = (i as f64 - 2.5) / (NUM_HEMISPHERE as f64 - 3.0);
-            let (cos, sin) = golden_rotation(i);
-            let r = (1.0 - z * z).sqrt();
-            let n = Vec3::new(r * cos, r * sin, z);
-            n / n.norm()
-        }
-    }
-}
-
-/// Returns cosine and sine of `i` golden angles, by complex powers: the same bits in every build.
-fn golden_rotation(i: usize) -> (f64, f64) {
+/// Returns the directions, the same bits in every build.
+fn directions() -> Directions {
     #[allow(clippy::excessive_precision)] // In single precision.
     const GOLDEN: (f64, f64) = (-0.7373688780783197, 0.6754902942615238);
+    let mut dirs = [Vec3::zeros(); NUM_DIRECTIONS];
+    // Cosine and sine of i golden angles.
     let (mut cos, mut sin) = (1.0, 0.0);
-    for _ in 0..i {
+    for i in 0..NUM_HEMISPHERE {
+        let n = match i {
+            0 => Vec3::x(),
+            1 => Vec3::y(),
+            2 => Vec3::z(),
+            _ => {
+                // Equal steps in height; the golden angle from each to the next.
+                let z = (i as f64 - 2.5) / (NUM_HEMISPHERE as f64 - 3.0);
+                let r = (1.0 - z * z).sqrt();
+                Vec3::new(r * cos, r * sin, z).normalize()
+            }
+        };
+        dirs[i] = n;
+        dirs[NUM_HEMISPHERE + i] = -n;
+        dirs[2 * NUM_HEMISPHERE + i] = (n + perpendicular(&n) * TILT_RAD).normalize();
         (cos, sin) = (
             cos * GOLDEN.0 - sin * GOLDEN.1,
             cos * GOLDEN.1 + sin * GOLDEN.0,
         );
     }
-    (cos, sin)
+    dirs
 }
 
 /// Tests a support function and its center, if there is one.
 pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
+    let dirs = directions();
     let mut points = [Vec3::zeros(); NUM_DIRECTIONS];
     let mut report = Check::default();
     let mut max_coordinate = center.map_or(0.0, max_abs);
-    for (i, point) in points.iter_mut().enumerate() {
-        *point = object.support(&direction(i));
+    for (point, n) in points.iter_mut().zip(&dirs) {
+        *point = object.support(n);
         // A finite sum has finite terms.
         if !point.sum().is_finite() {
             report.not_finite = true;
-            report.dir = direction(i).into();
+            report.dir = (*n).into();
             return report;
         }
         max_coordinate = larger(max_abs(point), max_coordinate);
@@ -129,16 +119,15 @@ pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
         return report;
     }
     let rounding = ROUNDING_ULPS * EPSILON * max_coordinate;
-    check_planes(&points, &mut report, rounding);
-    check_repetition(object, &points, &mut report, rounding);
+    check_planes(&dirs, &points, &mut report, rounding);
+    check_repetition(object, &dirs, &points, &mut report, rounding);
     if let Some(center) = center.filter(|_| !report.opposite) {
         report.outside = f64::NEG_INFINITY;
         let mut worst = Vec3::zeros();
-        for (i, point) in points.iter().enumerate() {
-            let n = direction(i);
+        for (n, point) in dirs.iter().zip(&points) {
             let outside = n.dot(&(center - point));
             if outside > report.outside {
-                (report.outside, worst) = (outside, n);
+                (report.outside, worst) = (outside, *n);
             }
         }
         report.center_outside = report.outside > rounding + report.noise;
@@ -150,22 +139,21 @@ pub fn check(object: &impl SupportMap, center: Option<&Vec3>) -> Check {
 }
 
 /// Compares each point with the support planes of all directions.
-fn check_planes(points: &[Vec3; NUM_DIRECTIONS], report: &mut Check, rounding: f64) {
+fn check_planes(dirs: &Directions, points: &Directions, report: &mut Check, rounding: f64) {
     // The planes that have all points on their outer side: all planes, if a sign is wrong.
     let mut num_opposite = 0;
-    for (i, point) in points.iter().enumerate() {
-        let n = direction(i);
+    for (n, point) in dirs.iter().zip(points) {
         let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
         for other in points {
             let height = n.dot(&(other - point));
             highest = larger(height, highest);
-            lowest = if height < lowest { height } else { lowest };
+            lowest = lesser(height, lowest);
         }
         num_opposite += usize::from(lowest >= -rounding && highest > rounding);
         report.size = larger(highest - lowest, report.size);
         if highest > report.noise {
             report.noise = highest;
-            report.dir = n.into();
+            report.dir = (*n).into();
         }
     }
     report.opposite = 4 * num_opposite > 3 * NUM_DIRECTIONS;
@@ -173,14 +161,19 @@ fn check_planes(points: &[Vec3; NUM_DIRECTIONS], report: &mut Check, rounding: f
 }
 
 /// Evaluates the same directions again, from the last to the first.
-fn check_repetition(object: &impl SupportMap, points: &[Vec3], report: &mut Check, rounding: f64) {
+fn check_repetition(
+    object: &impl SupportMap,
+    dirs: &Directions,
+    points: &Directions,
+    report: &mut Check,
+    rounding: f64,
+) {
     let mut worst = Vec3::zeros();
-    for (i, point) in points.iter().enumerate().rev() {
-        let n = direction(i);
-        let change = n.dot(&(object.support(&n) - point)).abs();
+    for (n, point) in dirs.iter().zip(points).rev() {
+        let change = n.dot(&(object.support(n) - point)).abs();
         // Negated, so that NaN counts as a change.
         if !(change <= report.change) {
-            (report.change, worst) = (change, n);
+            (report.change, worst) = (change, *n);
         }
     }
     report.changes = !(report.change <= rounding);
@@ -197,12 +190,13 @@ mod tests {
 
     #[test]
     fn directions_are_unit_and_cover_the_sphere() {
-        for i in 0..NUM_DIRECTIONS {
-            assert!((direction(i).norm() - 1.0).abs() < 4.0 * EPSILON);
+        let dirs = directions();
+        for n in &dirs {
+            assert!((n.norm() - 1.0).abs() < 4.0 * EPSILON);
         }
-        let sum: Vec3 = (0..2 * NUM_HEMISPHERE).map(direction).sum();
+        let sum: Vec3 = dirs[..2 * NUM_HEMISPHERE].iter().sum();
         assert!(sum.norm() < 1e-5);
-        let has_close_direction = |n: Vec3| (0..NUM_DIRECTIONS).any(|i| direction(i).dot(&n) > 0.9);
+        let has_close_direction = |n: Vec3| dirs.iter().any(|dir| dir.dot(&n) > 0.9);
         for n in [
             Vec3::x(),
             -Vec3::y(),
