@@ -57,8 +57,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(());
         };
-        let mut query = SupportQuery::new(&self.difference, None, 0.0);
-        let is_separated = axis.test(&mut query)?.is_some();
+        let is_separated = axis.test(&self.difference)?.is_some();
         state.depth = axis.target_separation;
         if is_separated {
             return Err(Stop::Separated(axis.dir));

@@ -19,8 +19,8 @@
 //! they are only a guess.
 
 use crate::math::{Vec3, larger, unit};
-use crate::minkowski::support::{Fault, SupportMap};
-use crate::minkowski::support_query::SupportQuery;
+use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::minkowski::tolerance::Scale;
 use crate::minkowski::tuning::{MAX_FAILURES, MIN_TARGET_REL, TARGET_DECAY};
 use crate::trace;
 
@@ -40,22 +40,25 @@ impl SeparatingAxis {
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
+    #[inline(always)]
     pub fn test<A: SupportMap, B: SupportMap>(
         &mut self,
-        query: &mut SupportQuery<'_, A, B>,
+        md: &MinkowskiDifference<A, B>,
     ) -> Result<Option<Vec3>, Fault> {
         trace::stage("separating axis");
+        let mut scale = Scale::default();
         for _ in 0..MAX_FAILURES {
             let n = self.dir;
-            let point = query.evaluate_point(&n)?;
+            let point = md.support(&n)?;
+            scale.note(&point);
             let separation = -n.dot(&point.v);
-            trace::direction(&n, -separation, query.upper.depth);
+            trace::direction(&n, -separation, f64::INFINITY);
             // NaN counts as separated.
-            let is_separated = !query.scale.is_depth(-separation);
+            let is_separated = !scale.is_depth(-separation);
             let least = if is_separated {
                 0.0
             } else {
-                MIN_TARGET_REL * query.scale.size()
+                MIN_TARGET_REL * scale.size()
             };
             let kept = TARGET_DECAY * self.target_separation;
             let target = larger(larger(separation, kept), least);
@@ -93,9 +96,8 @@ mod tests {
                 dir: (up + r.direction() * 0.3).normalize(),
                 target_separation: gap,
             };
-            let mut query = SupportQuery::new(&md, None, 0.0);
             for _ in 0..5 {
-                let n = axis.test(&mut query).unwrap().unwrap();
+                let n = axis.test(&md).unwrap().unwrap();
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
             }
             let n = axis.dir;
@@ -113,7 +115,7 @@ mod tests {
                 dir,
                 target_separation,
             };
-            let found = axis.test(&mut SupportQuery::new(&md, None, 0.0)).unwrap();
+            let found = axis.test(&md).unwrap();
             assert!(found.is_none() && (axis.dir.norm() - 1.0).abs() < 1e-12);
         }
     }

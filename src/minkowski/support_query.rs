@@ -136,7 +136,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Evaluates the support point along unit `dir` and records its sizes, nothing else: for queries that
-    /// continue after a separating axis or store points themselves.
+    /// store points themselves.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
