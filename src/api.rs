@@ -497,10 +497,10 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     };
     // A distance always has a result.
     let found = run(a, b, &settings, warm, Solver::Distance(margins))?.unwrap_or_default();
+    let (distance, distance_upper) = found.distance_bounds();
     Ok(Distance {
-        // Subtracted from 0, which avoids -0.0.
-        distance: lower_to_real(0.0 - found.depth),
-        distance_upper: 0.0 - lower_to_real(found.depth_lower),
+        distance,
+        distance_upper,
         normal: to_real(&found.normal),
         point1: to_real(&found.point1),
         point2: to_real(&found.point2),

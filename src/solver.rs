@@ -32,9 +32,8 @@ pub enum Solver {
 }
 
 impl Solver {
-    /// Runs the query from the state of the last one. [`WarmStart::note_separation`] and
-    /// [`Penetration::finish`] are to follow. `arena`: used by
-    /// [`Solver::Proven`] and [`Solver::Distance`] alone.
+    /// Runs the query from the state of the last one. [`WarmStart::note_separation`] and [`Penetration::finish`] are to
+    /// follow. `arena`: used by [`Solver::Proven`] and [`Solver::Distance`] alone.
     ///
     /// # Errors
     /// [`Stop::Separated`], not of [`Solver::Distance`]; [`Stop::Fault`]: the state is then not for use.
@@ -45,6 +44,7 @@ impl Solver {
         state: &mut WarmStart,
         arena: &mut dyn Arena,
     ) -> Result<Penetration, Stop> {
+        // A distance starts from the axis.
         if !matches!(self, Solver::Distance(_)) {
             pair.separate(state)?;
         }

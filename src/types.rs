@@ -7,7 +7,7 @@
 //! support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and `depth` is the least
 //! support value of the points that were returned. Moving obj2 by it need not separate the objects.
 
-use crate::math::{ITERATION_CAP, Vec3};
+use crate::math::{ITERATION_CAP, Real, Vec3, lower_to_real};
 
 /// The tolerance and the limits of a query.
 #[derive(Clone, Copy, Debug)]
@@ -144,6 +144,14 @@ impl Penetration {
         if !want.points {
             (self.point1, self.point2) = (Vec3::zeros(), Vec3::zeros());
         }
+    }
+
+    /// Returns the lower and the upper bound of the signed distance, metres, rounded outwards; 0 is +0.
+    pub fn distance_bounds(&self) -> (Real, Real) {
+        (
+            lower_to_real(0.0 - self.depth),
+            0.0 - lower_to_real(self.depth_lower),
+        )
     }
 
     /// Returns the middle of the witness points.

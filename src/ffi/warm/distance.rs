@@ -11,7 +11,7 @@ use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
 use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS};
 use super::state::ccd_warm_t;
-use crate::math::{Real, lower_to_real};
+use crate::math::Real;
 use crate::query::signed_distance::Margins;
 use crate::solver::Solver;
 use crate::types::{Penetration, Status, Want};
@@ -43,10 +43,10 @@ pub struct ccd_distance_t {
 
 impl From<Penetration> for ccd_distance_t {
     fn from(found: Penetration) -> Self {
-        // Subtracted from 0, which avoids -0.0.
+        let (distance, distance_upper) = found.distance_bounds();
         Self {
-            distance: lower_to_real(0.0 - found.depth),
-            distance_upper: 0.0 - lower_to_real(found.depth_lower),
+            distance,
+            distance_upper,
             normal: found.normal.into(),
             point1: found.point1.into(),
             point2: found.point2.into(),
