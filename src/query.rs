@@ -18,6 +18,8 @@
 
 pub mod signed_distance;
 
+use core::hint::black_box;
+
 use crate::along;
 use crate::contact::center_of_pressure::contact_position;
 use crate::epa::buffers::{Arena, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
@@ -69,7 +71,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// the caller's first direction, else x.
     #[inline(always)]
     pub fn cold_start(&self) -> Vec3 {
-        let from_center = self.centers.as_ref().and_then(|c| unit(&-c.v));
+        let from_center = self.centers.as_ref().and_then(|c| {
+            // Three loads: codegen, see README.
+            let [x, y, z] = [c.v.x, c.v.y, c.v.z].map(black_box);
+            unit(&Vec3::new(-x, -y, -z))
+        });
         from_center
             .or_else(|| self.first_dir.as_ref().and_then(unit))
             .unwrap_or(Vec3::x())
