@@ -158,17 +158,18 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         let is_depth = |h: f64| self.scale.is_depth(h);
         if tilt > 0.0 && is_depth(depth) && !is_depth(n.dot(&point.v)) {
             let plane = SupportPlane { dir, depth, point };
-            SupportPlane { dir, depth, point } = self.evaluate_untilted(n, plane)?;
+            SupportPlane { dir, depth, point } = self.evaluate_untilted(*n, plane)?;
         }
         trace::direction(&dir, depth, lesser(depth, self.upper.depth));
         Ok(SupportPlane { dir, depth, point })
     }
 
-    /// Evaluates unit `n` as it is after `tilted`. Returns `tilted` if the two points contradict each other.
+    /// Evaluates unit `n` as it is after `tilted`. Returns `tilted` if the two points contradict each other. Takes
+    /// `n` by value, so that the caller need not store it: codegen, see README.
     #[cold]
     #[inline(never)]
-    fn evaluate_untilted(&mut self, n: &Vec3, tilted: SupportPlane) -> Result<SupportPlane, Fault> {
-        let exact = self.evaluate_tilted(n, 0.0)?;
+    fn evaluate_untilted(&mut self, n: Vec3, tilted: SupportPlane) -> Result<SupportPlane, Fault> {
+        let exact = self.evaluate_tilted(&n, 0.0)?;
         let tie = self.scale.tie_eps();
         let has_farthest = |plane: &SupportPlane, other: &SupportPlane| {
             plane.dir.dot(&other.point.v) <= plane.depth + tie
