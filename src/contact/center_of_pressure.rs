@@ -551,6 +551,43 @@ mod tests {
         }
     }
 
+    /// Tests a cylinder on its rim whose center is nearly above it, at a deepest point that is as far from the rim's as the
+    /// center: the mirror plane is that of the cylinder.
+    #[test]
+    fn rim_is_mirrored_at_its_own_deepest_point() {
+        let (radius, half_height, depth) = (0.1_f64, 0.95, 1e-3);
+        let lean: f64 = radius.atan2(half_height) - 0.003;
+        let axis = Vec3::new(lean.sin(), 0.0, lean.cos());
+        let rim = move |n: &Vec3| {
+            let across = n - axis * n.dot(&axis);
+            across * (radius / across.norm()) + axis * half_height.copysign(n.dot(&axis))
+        };
+        let lowest = rim(&-Vec3::z());
+        let center = Vec3::new(-lowest.x, 0.0, -depth - lowest.z);
+        let floor = corners(Vec3::new(2.0, 2.0, 1.0));
+        let floor = placed(&floor, &Rotation3::identity(), -Vec3::z());
+        let md = difference(hull(&floor), move |n: &Vec3| rim(n) + center);
+        let mut set = VertexSet::<16>::EMPTY;
+        for (x, y) in [(0.0, 0.0), (0.5, -0.2), (0.01, 0.02), (0.1, 0.3)] {
+            let dir = Vec3::new(x, y, 1.0).normalize();
+            set.push(&dir, &md.support(&dir).unwrap());
+        }
+        let hit = Penetration {
+            depth,
+            normal: Vec3::z(),
+            point1: Vec3::new(0.0, 0.003, 0.0),
+            point2: Vec3::new(0.0, 0.003, -depth),
+            ..Penetration::default()
+        };
+        let centers = SupportPoint {
+            v: -Vec3::z() - center,
+            v1: -Vec3::z(),
+            v2: center,
+        };
+        let pos = contact_position(&md, &set, &hit, Some(&centers), 1e-9).unwrap();
+        assert!(pos.y.abs() < 1e-3 && pos.x.abs() < 5e-3, "{pos}");
+    }
+
     #[test]
     fn non_finite_point_is_a_fault() {
         let calls = core::cell::Cell::new(0);

@@ -3,9 +3,11 @@
 
 //! Finds points of a curved surface around the deepest one.
 //!
-//! Two opposite directions are evaluated, 45° from that to the center. The mirror images of both vertices in the plane of
-//! the normal and the center are the other two: right for bodies of revolution. If they cannot be, these directions are
-//! evaluated too. Of a disc the points between them on its rim are computed.
+//! Two opposite directions are evaluated, 45° from that of the center from the object's own deepest vertex. The mirror images
+//! of both vertices in the plane of the normal through these two points are the other two: right for bodies of revolution. If
+//! they cannot be, these directions are evaluated too. Of a disc the points between them on its rim are computed.
+//!
+//! (The contact's deepest point is a mean of witness points. A center as close to the normal as its error shows another plane.)
 
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, four_directions, is_within};
@@ -32,14 +34,14 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         extremes: &mut [Vec3; 4],
         fan: &mut Fan,
     ) -> Result<bool, Fault> {
-        let center = match self.has_centers {
-            true => self.centers[object % 2],
-            false => extremes.iter().sum::<Vec3>().xy(),
+        let (own, center) = match self.has_centers {
+            true => (self.own_deepest(object), self.centers[object % 2]),
+            false => (Vec2::zeros(), extremes.iter().sum::<Vec3>().xy()),
         };
-        let distance = center.norm();
+        let distance = (center - own).norm();
         let has_axis = distance > self.same_distance();
         let axis = if has_axis {
-            center / distance
+            (center - own) / distance
         } else {
             Vec2::x()
         };
@@ -54,12 +56,12 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         fan.is_symmetric =
             (a + c).xy().norm_squared() < tolerance * tolerance && (a.z - c.z).abs() < DROP_TOL;
         let mirror = |v: &Vec3| {
-            let along = 2.0 * axis.dot(&v.xy());
-            Vec3::new(along * axis.x - v.x, along * axis.y - v.y, v.z)
+            let aside = axis.perp(&(v.xy() - own)) * 2.0;
+            Vec3::new(v.x + aside * axis.y, v.y - aside * axis.x, v.z)
         };
         let (mut b, mut d) = (mirror(&c), mirror(&a));
         // The distance of each from the mirror plane, on the side to which its direction is tilted.
-        let [aside_a, aside_c] = [axis.perp(&a.xy()), -axis.perp(&c.xy())];
+        let [aside_a, aside_c] = [axis.perp(&(a.xy() - own)), -axis.perp(&(c.xy() - own))];
         let is_round = |v: &Vec3, aside: f64| {
             let lost = v.z * self.depth_over_tilt;
             aside >= -self.vertex_offset
@@ -105,6 +107,19 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             }
         }
         Ok(true)
+    }
+
+    /// Returns the deepest point of an object itself: the known vertex of the direction of least tilt, x and y.
+    #[inline(always)]
+    fn own_deepest(&self, object: usize) -> Vec2 {
+        let (mut own, mut least) = (Vec2::zeros(), f64::INFINITY);
+        for pair in self.known {
+            let tilt2 = Vec2::from(pair.tilt).norm_squared();
+            if tilt2 < least {
+                (own, least) = (pair.vertex(object).xy(), tilt2);
+            }
+        }
+        own
     }
 
     /// Returns whether one of two queried vertices was known before, or found by the polygon search, which gave up.
