@@ -57,8 +57,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             let least = larger(p, q) + 2.0 * self.vertex_offset;
             let mut found = None;
             let is_side = n > 2 || n == 2 && step < 2;
-            let is_covered =
-                may_fail && n < 3 && self.is_covered(object, out, ends, is_side, least);
+            let is_covered = may_fail && n < 3 && self.is_covered(object, out, ends, is_side);
             if !is_covered {
                 let v = self.query(object, out)?;
                 if self.height(&v, &out) > least {
@@ -94,14 +93,6 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
                 Some(v) => {
                     polygon.insert(side, &v);
                     step = 0;
-                    // A corner below the new one may now be lower in all directions.
-                    for i in [side + 2, side] {
-                        let corner = polygon.side(i)[0];
-                        let lower = larger(corner.z - v.z, 0.0) * self.depth_over_tilt;
-                        if lower * lower > offset(corner, &v).norm_squared() {
-                            polygon.remove(i);
-                        }
-                    }
                 }
             }
         }
@@ -138,18 +129,11 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         }
     }
 
-    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices, and no known vertex is
-    /// higher than `least`; `is_side`: towards it within 27°. (The directions that return a vertex form a convex set, which
+    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices; `is_side`: towards it within
+    /// 27°. (The directions that return a vertex form a convex set, which
     /// mostly contains the normal.)
     #[inline(always)]
-    fn is_covered(
-        &self,
-        object: usize,
-        out: Vec2,
-        ends: [&Vec3; 2],
-        is_side: bool,
-        least: f64,
-    ) -> bool {
+    fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
         let same = self.same_distance();
         let share = if is_side { 2.0 } else { 0.0 };
         let is_cover = |pair: &KnownPair| {
@@ -157,8 +141,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             let towards = tilt.dot(&out) - share * tilt.perp(&out).abs();
             towards >= MIN_COVER * self.tilt && ends.iter().any(|end| is_within(&v, end, same))
         };
-        let is_below = |pair: &KnownPair| self.height(&pair.vertex(object), &out) <= least;
-        self.known.iter().any(is_cover) && self.known.iter().all(is_below)
+        self.known.iter().any(is_cover)
     }
 }
 
@@ -236,19 +219,6 @@ impl Polygon {
         self.len += 1;
         self.open(side);
         self.open(i);
-    }
-
-    /// Removes a corner.
-    #[cold]
-    #[inline(never)]
-    fn remove(&mut self, i: usize) {
-        let removed = i % self.len.max(1);
-        for i in removed + 1..MAX_CORNERS {
-            self.corners[i - 1] = self.corners[i];
-            self.open_length2[i - 1] = self.open_length2[i];
-        }
-        self.len -= 1;
-        self.open((removed + self.len).saturating_sub(1) % self.len.max(1));
     }
 
     /// Returns whether four corners are a parallelogram, in space too.
