@@ -13,7 +13,6 @@ use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, four_directions, is_within};
 use crate::contact::tuning::{
     COMMON_DROP_FACTOR, DROP_TOL, MAX_CURVED_REL, MAX_TILT_TAN, MIN_CURVED_DROP, POINT_REL,
-    REPEAT_WINDOW,
 };
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, lesser};
@@ -39,7 +38,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             false => (Vec2::zeros(), extremes.iter().sum::<Vec3>().xy()),
         };
         let distance = (center - own).norm();
-        let has_axis = distance > self.same_distance();
+        let has_axis = distance > self.vertex_offset;
         let axis = if has_axis {
             (center - own) / distance
         } else {
@@ -64,12 +63,11 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         let [aside_a, aside_c] = [axis.perp(&(a.xy() - own)), -axis.perp(&(c.xy() - own))];
         let is_round = |v: &Vec3, aside: f64| {
             let lost = v.z * self.depth_over_tilt;
-            aside >= -self.vertex_offset
+            aside >= 0.0
                 && aside <= MAX_CURVED_REL * self.tilt * self.extent
                 && lost >= MIN_CURVED_DROP * aside
         };
-        let may_be_mirrored =
-            self.has_centers && (fan.is_symmetric || has_axis && self.known.len() >= REPEAT_WINDOW);
+        let may_be_mirrored = self.has_centers && (fan.is_symmetric || has_axis);
         let is_mirrored = may_be_mirrored
             && self.tilt < MAX_TILT_TAN
             && is_round(&a, aside_a)
@@ -84,10 +82,10 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
             let is_face = between.is_none() && drop_at_deepest < DROP_TOL;
             let is_corner = [&b, &d].iter().any(|v| {
-                let same = self.same_distance();
+                let same = self.vertex_offset;
                 is_within(v, &a, same) || is_within(v, &c, same)
             });
-            if is_face || is_corner || self.is_known(object, extremes, [&b, &d]) {
+            if is_face || is_corner {
                 let found = [a, b, c, d];
                 found.iter().for_each(|v| self.raise_extremes(extremes, v));
                 return Ok(false);
@@ -124,7 +122,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     /// Returns whether one of two queried vertices was known before, or found by the polygon search, which gave up.
     #[inline(always)]
     fn is_known(&self, object: usize, extremes: &[Vec3; 4], queried: [&Vec3; 2]) -> bool {
-        let same = self.same_distance();
+        let same = self.vertex_offset;
         let is_one = |v: &Vec3| is_within(v, queried[0], same) | is_within(v, queried[1], same);
         let mut is_known = false;
         for pair in self.known {

@@ -22,9 +22,7 @@
 
 use crate::contact::fan::Fan;
 use crate::contact::frame::ContactFrame;
-use crate::contact::tuning::{
-    MAX_KNOWN, MAX_TILT_TAN, POINT_REL, REPEAT_WINDOW, SAME_REL, TILT_FACTOR, VERTEX_OFFSET_REL,
-};
+use crate::contact::tuning::{MAX_KNOWN, MAX_TILT_TAN, POINT_REL, TILT_FACTOR, VERTEX_OFFSET_REL};
 use crate::geometry::polygon::Vec2;
 use crate::math::{EPSILON, Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
@@ -94,7 +92,7 @@ pub struct FeatureQuery<'q, A, B> {
     cosine: f64,
     /// Depth divided by T, metres.
     pub depth_over_tilt: f64,
-    /// Distance by which vertices are moved outwards, metres.
+    /// Distance by which vertices are moved outwards, and below which two are the same, metres.
     pub vertex_offset: f64,
 }
 
@@ -148,7 +146,8 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
         let depth_over_tilt = depth / tilt;
         let known = known.get(..len).unwrap_or(&[]);
-        let evidence = Evidence::new(known, depth_over_tilt, SAME_REL * extent);
+        let vertex_offset = larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent);
+        let evidence = Evidence::new(known, depth_over_tilt, vertex_offset);
         Self {
             md,
             frame,
@@ -163,7 +162,7 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
             tilt,
             cosine: 1.0 / (1.0 + tilt * tilt).sqrt(),
             depth_over_tilt,
-            vertex_offset: larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent),
+            vertex_offset,
         }
     }
 
@@ -209,12 +208,6 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         out.dot(&v.xy()) - v.z * self.depth_over_tilt
     }
 
-    /// Returns the distance below which two vertices are the same, metres.
-    #[inline(always)]
-    pub fn same_distance(&self) -> f64 {
-        SAME_REL * self.extent
-    }
-
     /// Finds the feature of an object and makes its fan. Returns false if the deepest point is the center of pressure:
     /// the feature is a point, or the fan has no area.
     ///
@@ -243,13 +236,16 @@ struct Evidence {
 }
 
 impl Evidence {
-    /// Compares the known vertices. `same`: the distance below which two are the same, metres.
+    /// Compares each known vertex with the one before it and with the last. `same`: the distance below which two are the same,
+    /// metres.
     #[inline(always)]
     fn new(known: &[KnownPair], depth_over_tilt: f64, same: f64) -> Self {
         // The index of a vertex is in the low bits of its height, so that the maximum carries it.
         const MASK: u64 = MAX_KNOWN as u64 - 1;
         let mut best = [[f64::NEG_INFINITY; 2]; 4];
         let mut repeated = [0_u64; 2];
+        let last = known.last().unwrap_or(&KnownPair::ZERO);
+        let mut previous = last;
         for (i, v) in known.iter().enumerate() {
             let in_overlap = v.drop.map(|drop| u64::from(drop <= 1.0));
             for k in 0..2 {
@@ -263,14 +259,14 @@ impl Evidence {
                     best[k] = larger(height, best[k]);
                 }
             }
-            let before = known.get(..i).unwrap_or(&[]);
-            for w in before.iter().rev().take(REPEAT_WINDOW) {
+            for w in [previous, last] {
                 let is_other = u64::from(v.tilt != w.tilt);
                 for (k, repeated) in repeated.iter_mut().enumerate() {
                     let distance = larger((v.x[k] - w.x[k]).abs(), (v.y[k] - w.y[k]).abs());
                     *repeated |= u64::from(distance <= same) & is_other & in_overlap[k];
                 }
             }
+            previous = v;
         }
         Self {
             farthest: best.map(|best| best.map(|height| (height.to_bits() & MASK) as usize)),

@@ -11,7 +11,7 @@
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, KnownPair, four_directions, is_within};
 use crate::contact::frame::outwards;
-use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL, MIN_COVER, POINT_REL};
+use crate::contact::tuning::{DROP_TOL, MIN_COVER, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
@@ -35,7 +35,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         may_fail: bool,
         fan: &mut Fan,
     ) -> Result<bool, Fault> {
-        let same = self.same_distance();
+        let same = self.vertex_offset;
         let mut polygon = Polygon::default();
         for v in extremes.iter() {
             polygon.push_distinct(v, same);
@@ -134,7 +134,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     /// mostly contains the normal.)
     #[inline(always)]
     fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
-        let same = self.same_distance();
+        let same = self.vertex_offset;
         let share = if is_side { 2.0 } else { 0.0 };
         let is_cover = |pair: &KnownPair| {
             let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
@@ -233,14 +233,12 @@ impl Polygon {
     #[inline(always)]
     fn write_fan(&self, fan: &mut Fan, distance: f64) {
         let corners = self.corners.get(..self.len).unwrap_or(&[]);
-        let least = corners.iter().fold(1.0, |least, v| lesser(v.z, least));
-        let common = COMMON_DROP_FACTOR * least;
         fan.len = 0;
         if let [a, b] = corners {
             let along = offset(a, b);
             let out = four_directions(along * (1.0 / along.norm()));
             for (v, k) in [(a, 2), (a, 3), (b, 0), (b, 1)] {
-                fan.push(moved(v, out[k], distance, common));
+                fan.push(moved(v, out[k], distance, 0.0));
             }
             return;
         }
@@ -248,7 +246,7 @@ impl Polygon {
         for v in corners {
             let out = offset(&mean, v);
             let norm2 = larger(out.norm_squared(), f64::MIN_POSITIVE);
-            fan.push(moved(v, out, distance / norm2.sqrt(), common));
+            fan.push(moved(v, out, distance / norm2.sqrt(), 0.0));
         }
     }
 }

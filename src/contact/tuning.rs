@@ -19,12 +19,6 @@ pub const MIN_COVER: f64 = 0.6;
 /// Number of most recent known vertices used. Measured: with 8 a hit takes 0.8 % fewer instructions and 0.1 % more support
 /// points, and a position of nearly parallel frusta (`judged hard`) is outside.
 pub const MAX_KNOWN: usize = 16;
-/// An object is a polytope if one of so many evaluations before another returned the same vertex, and a body of revolution
-/// if none did and so many vertices are known. Measured: with all evaluations the position takes 4 % more instructions, with
-/// 3 of them 0.008 more support points; mirror images of fewer known vertices are off by 14 mm on boxes.
-pub const REPEAT_WINDOW: usize = 4;
-/// Distance, relative to the extent, below which two vertices are the same: above the rounding of callbacks.
-pub const SAME_REL: f64 = 1e-7;
 /// Largest distance of a vertex from the mirror plane, relative to T times the extent: the radius of curvature is at
 /// most 1.1 times the extent. Also the largest height lost by the drop, relative to the distance: 0.7 on a sphere. Corners
 /// of faces are farther away. Measured: with 1, 2 positions are off the object, with 0.5 a hit takes 0.2 support points more.
@@ -44,7 +38,7 @@ pub const DROP_TOL: f64 = 0.05;
 /// spheres, its error is 7 mm.
 pub const COMMON_DROP_FACTOR: f64 = 0.75;
 /// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest
-/// point is inside. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
+/// point is inside; closer vertices are the same. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
 pub const VERTEX_OFFSET_REL: f64 = 1.0 / 512.0;
 /// The assumed slope of flanks. Insensitive: 2 to 8 tried.
 pub const FLANK_SLOPE: f64 = 4.0;
