@@ -19,8 +19,7 @@
 //!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
 //! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are queried with half the tilt: on
 //!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it.
-//!    The surface between two samples is taken for smooth if each vertex exceeds the other by the same amount in
-//!    its own direction, as on a surface with p linear in t. Displacements greater than sqrt(slop · size / 2) are
+//!    Displacements greater than sqrt(slop · size / 2) are
 //!    not treated as rounding of a corner.
 //! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. If their vertices
 //!    moved as one rigid body, so did the corners; else the face is searched anew.
@@ -31,7 +30,7 @@
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
 use crate::contact::tuning::{
-    MAX_LEAN, MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS, SIDE_LEAN,
+    MAX_LEAN, MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS,
 };
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
@@ -75,11 +74,6 @@ impl FaceSample {
             corner: found,
             ..Self::default()
         }
-    }
-
-    /// Returns by how much the vertex exceeds another one in its own direction.
-    fn gain_over(&self, other: &Self) -> f64 {
-        self.tilt.dot(&offset(&other.found, &self.found)) + other.found.z - self.found.z
     }
 }
 
@@ -328,8 +322,9 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         }
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
         let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
-        let lean = larger(2.0 * self.face.coord_eps / (length * tilt_tan), SIDE_LEAN);
-        let out = outwards(&a, &b, 1.0 / tilt_tan, lesser(lean, MAX_LEAN));
+        // Towards the second corner, so that rounding does not decide between them.
+        let lean = lesser(2.0 * self.face.coord_eps / (length * tilt_tan), MAX_LEAN);
+        let out = outwards(&a, &b, 1.0 / tilt_tan, lean);
         let new = self.query_corner(out * tilt_tan)?;
         if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
@@ -379,33 +374,15 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             }
             full = new;
         }
-        let mut tilt = full.tilt * 0.5;
-        for _ in 0..2 {
-            if self.query_count >= self.query_limit() {
-                break;
-            }
-            let near = self.query(tilt)?;
-            let outwards = offset(&near.found, &full.found);
-            let moved = outwards.norm();
+        if self.query_count < self.query_limit() {
+            let near = self.query(full.tilt * 0.5)?;
+            let moved = offset(&near.found, &full.found).norm();
             let max_moved = self.face.slop / self.face.tilt_tan.sqrt();
-            let (gain1, gain2) = (full.gain_over(&near), near.gain_over(&full));
-            let is_smooth = (gain1 - gain2).abs() <= 0.5 * (gain1 + gain2) + self.face.coord_eps;
-            if self.is_same(&full, &near) {
-                break;
-            }
-            if moved <= max_moved && is_smooth {
+            if !self.is_same(&full, &near) && moved <= max_moved {
                 full.radius = moved / (full.tilt - near.tilt).norm();
                 full.corner = near.found * 2.0 - full.found;
                 full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
-                break;
             }
-            // Half the tilt found the other, higher rounded end of a segment. A lean that compensates the difference
-            // of the heights, and more, finds this end.
-            let lean = lesser(
-                0.125 * self.face.tilt_tan + gain2 / moved,
-                self.face.tilt_tan,
-            );
-            tilt += outwards * (lean / moved);
         }
         *self.face.samples.cyclic_mut(i) = FaceSample {
             has_core: true,
