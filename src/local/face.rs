@@ -17,14 +17,13 @@ pub struct Face {
 }
 
 impl Face {
-    /// Returns the face of three corners; `None` if they lie on a line.
-    pub fn new(corners: &[Vertex; 3]) -> Option<Self> {
-        let [a, b, c] = corners.each_ref().map(|v| v.w);
-        let normal = normalise_unscaled(&(b - a).cross(&(c - a)))?;
+    /// Returns the face of three corners with the outward normal `n`, of any length; `None` if they lie on a line.
+    pub fn new(corners: &[Vertex; 3], n: &Vec3) -> Option<Self> {
+        let normal = normalise_unscaled(n)?;
         Some(Self {
             corners: *corners,
             normal,
-            offset: normal.dot(&a),
+            offset: normal.dot(&corners[0].w),
         })
     }
 
