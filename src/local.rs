@@ -49,8 +49,8 @@ use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, CONFIRM_TILT_RANGE, LARGE_PART, MAX_EXTRAPOLATION_TAN,
-    MAX_FAILED_PREDICTIONS, SAME_VALLEY_COS, SMALL_PART,
+    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, LARGE_PART, MAX_EXTRAPOLATION_TAN, MAX_FAILED_PREDICTIONS,
+    SAME_VALLEY_COS, SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -462,10 +462,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     ) -> Result<bool, Stop> {
         trace::stage("confirmation");
         let before = self.query.upper.depth;
-        let far = center_tolerance.map_or(CONFIRM_TILT_RANGE * CONFIRM_TILT_RAD, |_| {
-            MAX_EXTRAPOLATION_TAN
-        });
-        let near = CONFIRM_TILT_RAD / CONFIRM_TILT_RANGE;
+        let near = SMALL_PART * CONFIRM_TILT_RAD;
+        let far = center_tolerance.map_or(CONFIRM_TILT_RAD / SMALL_PART, |_| MAX_EXTRAPOLATION_TAN);
         let mut is_known = [false; 3];
         for k in 0..self.set.len() {
             let dir = self.set.dir(k);

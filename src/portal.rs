@@ -30,7 +30,7 @@ use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::tuning::{
-    CENTRAL_RING_TAN, MAX_FAILURES, SMALL_PART, TILT_GROWTH, TILT_WIDTH_EDGE, TILT_WIDTH_OFF,
+    CENTRAL_RING_TAN, LARGE_PART, MAX_FAILURES, SMALL_PART, TILT_GROWTH, TILT_WIDTH_OFF,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
@@ -164,7 +164,7 @@ fn discovery_dir(
     let off = -height / norm;
     let mut tilt = f64::INFINITY;
     if failures < MAX_FAILURES {
-        let widest = (TILT_WIDTH_OFF * off).max(TILT_WIDTH_EDGE * edge) / length;
+        let widest = (TILT_WIDTH_OFF * off).max(LARGE_PART * edge) / length;
         tilt = lesser(TILT_GROWTH * upper.depth / off, widest);
         for _ in 0..failures {
             tilt *= TILT_GROWTH;

@@ -13,7 +13,7 @@ use crate::math::{Vec3, larger, lesser};
 
 /// The height of a triangle up to which it counts as without area, in ulps of the size. Derived: twice the error of a
 /// plane through its corners.
-pub const MIN_EXTENT_ULPS: f64 = 16.0;
+pub const MIN_EXTENT_ULPS: f64 = 2.0 * PLANE_ERROR_ULPS;
 /// The error of a plane that is computed from its corners, in ulps of the size. Derived: two dot products of a
 /// unit vector and a point, with three products and two sums each; the normalisation of the unit vector; and the
 /// coordinates of the interior point.

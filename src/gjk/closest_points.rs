@@ -175,7 +175,9 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
                 continue;
             }
             let w = self.query.evaluate_signed(&mut self.set, &dir)?.vertex();
-            if self.height(&dir, &w.w) > 0.5 * self.query.scale.contact_eps() && !self.add(w) {
+            // By more than the errors of two points.
+            let level = 2.0 * self.query.scale.support_eps();
+            if self.height(&dir, &w.w) > level && !self.add(w) {
                 return Ok(Status::Converged);
             }
         }

@@ -88,6 +88,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
 /// Returns whether D counts as smooth between the upper bound and entry `k`, and curved enough for a minimum: e + f, the
 /// radius of curvature times the square of the turn, is larger for the radius than for the upper bound, and e and f differ
 /// by at most [`SMOOTH_REL_TOL`] of it.
+#[inline(always)]
 fn is_smooth_between<const N: usize>(upper: &SupportPlane, set: &VertexSet<N>, k: usize) -> bool {
     let d = set.difference(VertexSet::<N>::pair_of_entry(k)) - upper.point.v;
     let dir = set.dir(k);

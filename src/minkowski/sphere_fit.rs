@@ -26,7 +26,7 @@ use crate::geometry::barycentric;
 use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, MIN_SAMPLES, SMALL_PART};
+use crate::minkowski::tuning::{MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
@@ -431,7 +431,9 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
         source: DirectionSource::Normal,
         value: upper,
     };
-    if !along_normal && (set.len() >= MIN_SAMPLES || fit.is_confirmed) {
+    // Once more is known than three corners. (Measured: with fits at once shallow boxes take 9 % more instructions, with
+    // fits from three points on 7 %.)
+    if !along_normal && (set.len() > 3 || fit.is_confirmed) {
         let corners = corners(set);
         if !corners.iter().any(|v| v.pair.is_interior()) {
             next = fit.choose(set, &corners, &next.dir, &query.upper, gap);
