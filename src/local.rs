@@ -49,8 +49,8 @@ use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_NEAR_COS, CONFIRM_TILT_RAD, LARGE_PART, MAX_EXTRAPOLATION_TAN, MAX_FAILED_PREDICTIONS,
-    SAME_VALLEY_COS, SMALL_PART,
+    CONFIRM_TILT_RAD, LARGE_PART, MAX_EXTRAPOLATION_TAN, MAX_FAILED_PREDICTIONS, SAME_VALLEY_COS,
+    SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -478,9 +478,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 .is_none_or(|tolerance| self.fit.is_confirmed_twice(self.set, pair, tolerance));
             for (is_known, direction) in is_known.iter_mut().zip(directions) {
                 let along = off.dot(direction);
-                *is_known |= is_accepted
-                    && along > 0.0
-                    && along * along > CONFIRM_NEAR_COS * CONFIRM_NEAR_COS * sine2;
+                // Within 60 degrees: a known direction confirms the closest of three.
+                *is_known |= is_accepted && along > 0.0 && along * along > 0.25 * sine2;
             }
         }
         for (direction, _) in directions.iter().zip(is_known).filter(|(_, known)| !known) {

@@ -26,7 +26,9 @@ use crate::geometry::barycentric;
 use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, SMALL_PART};
+use crate::minkowski::tuning::{
+    CONFIRM_TILT_RAD, MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, SMALL_PART,
+};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
@@ -302,9 +304,10 @@ impl SphereFit {
 /// The exact fits of the local search, whose result a prediction may be: e = f, and the changes of direction and
 /// vertex are parallel, within rounding.
 impl SphereFit {
-    /// Returns whether two directions confirm the center of each sphere, that of obj1's entry and that of obj2's entry
-    /// in `pair`: the two estimates of a center differ by at most `tolerance` metres. From one direction the tip of a
-    /// drop fits a sphere, and from several nearby ones the rim of a thin disc nearly does.
+    /// Returns whether two directions, as far apart as those that confirm a minimum ([`CONFIRM_TILT_RAD`]), confirm the
+    /// center of each sphere, that of obj1's entry and that of obj2's entry in `pair`: the two estimates of a center differ
+    /// by at most `tolerance` metres. From one direction the tip of a drop fits a sphere, and from several nearby ones the
+    /// rim of a thin disc nearly does.
     pub fn is_confirmed_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -323,11 +326,13 @@ impl SphereFit {
         tolerance: f64,
     ) -> bool {
         let max_distance = lesser(SAME_CENTER_REL * self.sum(), tolerance);
+        let min_turn = SMALL_PART * CONFIRM_TILT_RAD;
         (samples.iter().zip(self.radius).enumerate()).all(|(object, (sample, radius))| {
             let confirms = |k: usize| {
                 let other = FitSample::of_entry(set, k);
                 let distance = other.center(object, radius) - sample.center(object, radius);
-                (other.dir - sample.dir).norm_squared() > 1e-8 && distance.norm() <= max_distance
+                let turn2 = (other.dir - sample.dir).norm_squared();
+                turn2 > min_turn * min_turn && distance.norm() <= max_distance
             };
             !(radius > 0.0) || (0..set.len()).any(confirms)
         })

@@ -85,8 +85,6 @@ pub const CENTRAL_RING_TAN: f64 = 1.7;
 /// The tilt of the directions that confirm a minimum, radians: no support value at this angle may be lower. A face
 /// that is narrower, as seen from the origin, needs such a confirmation.
 pub const CONFIRM_TILT_RAD: f64 = 0.015;
-/// The least cosine between such a direction and the tilted one, seen along the direction of the minimum.
-pub const CONFIRM_NEAR_COS: f64 = 0.6;
 /// The least cosine between a face's normal and the direction of the upper bound at which they count as in the same
 /// valley: 11 degrees. Measured on hulls, started 5 degrees from a minimum: with 0.9 2.2 % of the pairs end in another
 /// minimum, with 0.98 1.0 %.
