@@ -32,7 +32,9 @@ use crate::minkowski::tuning::{
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
-/// change of vertex, of two samples of one sphere in fits that only choose directions. Insensitive: 0.02 to 0.1.
+/// change of vertex, of two samples of one sphere in fits that only choose directions. Measured: with 0.1 ellipsoids take 2
+/// to 18 % fewer support points and hulls 2 to 3 % more, but the direction jumps once for a hull that turns in a hull (test
+/// `continuity`).
 const LOOSE_REL_TOL: f64 = 0.03;
 /// The same in exact fits, whose prediction may be a result: far above the rounding error of the callbacks.
 const EXACT_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
@@ -221,7 +223,7 @@ impl SphereFit {
     }
 
     /// Returns the direction of the upper bound, `lowest`, tilted towards the unit normal of a face; `None` if the
-    /// angle to the normal is less than 1.5 times the tilt or more than 60°.
+    /// angle to the normal is less than the tilt, or not acute.
     ///
     /// On a sphere of radius ρ, with the origin at the distance e = ρ − upper from its center, a chord between the
     /// angles α and γ from `lowest` is at least as far from the origin as the upper bound if
@@ -256,7 +258,7 @@ impl SphereFit {
         // Faces as wide as the first ring are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
         let tilt = (ratio * least).max(first);
-        if !(sine > 1.5 * tilt) || along < 0.5 {
+        if !(sine > tilt) || !(along > 0.0) {
             return None;
         }
         let dir = lowest + perpendicular * (tilt / sine);
