@@ -151,20 +151,17 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         trace::stage("local search");
         let first = self.query.evaluate_first(start, is_remembered)?;
         self.set.push(&self.query.upper.dir, &first);
-        let has_center = self.query.interior.is_some();
-        if !has_center {
+        if !self.is_centered {
             // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
-            let opposite_dir = perpendicular(start) * CONFIRM_TILT_RAD - start;
+            let dir = perpendicular(start) * CONFIRM_TILT_RAD - start;
             // Not stored in the set: as a corner it would make the portals wide.
-            let opposite = self
-                .query
-                .evaluate_point(&(opposite_dir / opposite_dir.norm()))?;
+            let opposite = self.query.evaluate_point(&(dir / dir.norm()))?;
             self.interior = (first.v + opposite.v) * 0.5;
         }
         let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
         // Without centers, or if the start direction leads to the far side: evaluate the direction from the interior
         // point to the origin too.
-        if !has_center || to_origin.dot(start) < 0.0 {
+        if !self.is_centered || to_origin.dot(start) < 0.0 {
             self.query.evaluate(self.set, &to_origin)?;
         }
         Ok(self.query.upper.dir)
@@ -288,8 +285,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 if let Some(p) = &prediction {
                     let slack = SMALL_PART * larger(before - p.value, tolerance);
                     if sample.h < p.value + slack {
-                        let is_minimum = self.is_minimum(p, sample.h, tolerance);
-                        return Ok(match is_minimum {
+                        return Ok(match self.is_minimum(p, sample.h, tolerance) {
                             true => Step::Fit(face, p.model),
                             false => Step::Ray(p.dir),
                         });
@@ -324,7 +320,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<Step> {
         let upper = &self.query.upper;
         let angle2 = 2.0 * (1.0 - face.normal.dot(&upper.dir));
-        if is_inside && (face.offset - upper.depth).abs() <= LARGE_PART * tolerance {
+        if is_inside && self.equals_upper_bound(face.offset, tolerance) {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
