@@ -19,8 +19,7 @@
 //!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
 //! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are queried with half the tilt: on
 //!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it.
-//!    Displacements greater than sqrt(slop · size / 2) are
-//!    not treated as rounding of a corner.
+//!    Displacements greater than sqrt(slop · size / 2) are not treated as rounding of a corner.
 //! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. If their vertices
 //!    moved as one rigid body, so did the corners; else the face is searched anew.
 //!

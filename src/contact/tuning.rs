@@ -33,12 +33,12 @@ pub const POINT_REL: f64 = 0.008;
 /// Largest drop, and difference of drops, that count as none, in depths: an error of a third of this fraction of the half
 /// width. Insensitive: 0.01 to 0.1 tried.
 pub const DROP_TOL: f64 = 0.05;
-/// Fraction of the smallest drop of all vertices that is subtracted from each: a curved surface of radius R has
-/// the drop R T²/2 all around. Measured: with 0 the position of a lying capsule jumps by 5 mm; with 1, exact for
-/// spheres, its error is 7 mm.
+/// Fraction of the smallest drop of all vertices of a curved surface that is subtracted from each: with radius R the drop is
+/// R T²/2 all around. Measured: with 0 the position of a lying capsule jumps by 5 mm; with 1, exact for spheres, its error
+/// is 7 mm.
 pub const COMMON_DROP_FACTOR: f64 = 0.75;
-/// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest
-/// point is inside; closer vertices are the same. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
+/// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest point is inside;
+/// closer vertices are the same. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
 pub const VERTEX_OFFSET_REL: f64 = 1.0 / 512.0;
 /// The assumed slope of flanks. Insensitive: 2 to 8 tried.
 pub const FLANK_SLOPE: f64 = 4.0;

@@ -279,7 +279,8 @@ static void check_prisms(int k, int regular, long paths)
     const double rms = sqrt(square / fmax(1, (double)poses));
     printf("%2d corners%s: %ld poses, rms %.2f mm, worst %.2f mm, jump %.2f mm, warm or swapped %.2f mm\n", k, regular ? ", regular" : "",
            poses, 1e3 * rms, 1e3 * worst, 1e3 * jump, 1e3 * differs);
-    CHECK(rms < 1e-3 && worst < 2e-3, "%d corners: error", k);
+    /* As <ccd/warm.h> says. */
+    CHECK(rms < (single ? 1e-3 : 1e-4) && worst < (single ? 2e-3 : 5e-4), "%d corners: error", k);
     CHECK(jump < 2e-3, "%d corners: a jump", k);
     CHECK(differs < 1e-3, "%d corners: warm or swapped", k);
 }

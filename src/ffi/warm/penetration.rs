@@ -42,12 +42,12 @@ pub struct ccd_penetration_t {
     /// overlap volume, projected along normal to the plane midway between the two support planes.
     /// At most half the depth from both objects, within the tolerance; up to 1 mm farther in 2 of a
     /// million hits of slender metre-sized curved bodies. Root mean square error for objects of a
-    /// quarter metre and depths up to a millimetre: 0.1 mm for prisms and boxes on a
-    /// face, 3 mm for boxes in any pose and discs, 7 mm for other round objects, 15 mm for a cone on
-    /// its side; for greater depths 3 % of the smaller object's size at a depth of 3 % of it, 6 % at
-    /// 10 %, 20 % at 30 %. While the normal stays, pos moves by at most 2 mm more than four times
-    /// the motion for these prisms and boxes. With CCD_LIMIT, in ccdPenetrationAlong and
-    /// ccdPenetrationPlanar, the middle of the witness points.
+    /// quarter metre and depths up to a millimetre: 0.1 mm for faces of 3 to 10 corners on a floor, at
+    /// most 0.5 mm (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for round
+    /// objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller object's
+    /// size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos moves by at
+    /// most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
+    /// ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
     /// Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the larger
     /// of the error of depth and 1e-12 of the size (1e-5 in single precision).
