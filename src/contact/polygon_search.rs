@@ -74,7 +74,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
                 }
             }
             step += 1;
-            match found.filter(|v| !polygon.has(v, same)) {
+            match found {
                 None => {
                     if is_side && !is_covered {
                         polygon.open_length2[side % MAX_CORNERS] = 0.0;
@@ -197,13 +197,6 @@ impl Polygon {
         }
         let i = (longest & MASK) as usize;
         (i < MAX_CORNERS).then_some(i)
-    }
-
-    /// Returns whether a vertex is a corner.
-    #[inline(always)]
-    fn has(&self, v: &Vec3, same: f64) -> bool {
-        let mut corners = self.corners.iter().take(self.len);
-        corners.any(|corner| is_within(corner, v, same))
     }
 
     /// Inserts a corner beyond a side.
