@@ -146,8 +146,9 @@ impl<'q, A: SupportMap, B: SupportMap> FeatureQuery<'q, A, B> {
         let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
         let depth_over_tilt = depth / tilt;
         let known = known.get(..len).unwrap_or(&[]);
-        let vertex_offset = larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent);
-        let evidence = Evidence::new(known, depth_over_tilt, vertex_offset);
+        let rounding = 64.0 * EPSILON * extent;
+        let vertex_offset = larger(depth * VERTEX_OFFSET_REL, rounding);
+        let evidence = Evidence::new(known, depth_over_tilt, rounding);
         Self {
             md,
             frame,
@@ -236,8 +237,8 @@ struct Evidence {
 }
 
 impl Evidence {
-    /// Compares each known vertex with the one before it and with the last. `same`: the distance below which two are the same,
-    /// metres.
+    /// Compares each known vertex with the one before it and with the last. `same`: the distance up to which two are the
+    /// same, metres.
     #[inline(always)]
     fn new(known: &[KnownPair], depth_over_tilt: f64, same: f64) -> Self {
         // The index of a vertex is in the low bits of its height, so that the maximum carries it.
