@@ -289,13 +289,13 @@ struct CenterOutside {
     ccd::Vec3 center() const { return {}; }
 };
 struct NotFinite {
-    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x, d.y, d.z > CCD_REAL(0.9) ? CCD_REAL(NAN) : d.z}; }
+    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x, d.y, d.z > CCD_REAL(0.9) ? ccd_real_t(NAN) : d.z}; }
 };
 /* A box: the direction is turned to its frame, the point is not turned back. */
 struct NotTurnedBack {
     ccd::Vec3 support(const ccd::Vec3 &d) const
     {
-        return {std::copysign(CCD_REAL(1), d.y), std::copysign(CCD_REAL(2), d.z), std::copysign(CCD_REAL(0.5), d.x)};
+        return {std::copysign(ccd_real_t(1), d.y), std::copysign(ccd_real_t(2), d.z), std::copysign(ccd_real_t(0.5), d.x)};
     }
 };
 struct Changing {
