@@ -132,7 +132,6 @@ try tests/contract/arguments.c 20
 try tests/contract/callbacks.c
 try tests/contract/threads.c
 try tests/contract/exceptions.c
-try tests/extension/support_check.c
 try examples/pair_table.c
 try examples/world.c
 try tests/extension/warm_states.c
