@@ -108,11 +108,11 @@ impl Executable {
     }
 
     /// Runs the program as [`run`](Self::run) does, with any exit code. It has 300 s, under a tool or an emulator twenty
-    /// times that. Output that is too long to read is not printed.
+    /// times that. Output that is too long to read is printed only if the program failed.
     pub fn run_to_end(&self, args: impl IntoIterator<Item = impl AsRef<OsStr>>) -> (ExitStatus, Written) {
         let seconds = if self.runner().is_empty() { 300 } else { 6000 };
         let (status, written) = run_command(self.command().args(args), Duration::from_secs(seconds));
-        if written.stdout.len() < 20_000 {
+        if !status.success() || written.stdout.len() < 20_000 {
             println!("--- {}\n{}{}", self.path.display(), written.stdout, written.stderr);
         }
         (status, written)
