@@ -117,6 +117,7 @@ static inline long pose_all(const int *kinds, int count, long poses, body_t *a, 
                 pose_overlapping(a, b, &pose);
                 make();
                 query();
+                queried++;
                 for (int d = 0; d < DEPTH_COUNT; d++)
                     if (DEPTHS[d] * pose.size < pose.upper) {
                         pose_at_depth(b, &pose, DEPTHS[d] * pose.size);
