@@ -564,8 +564,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 }
 
-/// Returns whether two unit vectors count as the same. By their difference: where they are rounded to single precision,
-/// their product may differ from 1 by more than an angle does that must be told apart.
+/// Returns whether two unit vectors count as the same, by their difference: the product of vectors that are rounded to single
+/// precision differs from 1 by as much as that of vectors 3e-4 rad apart.
 fn is_same(a: &Vec3, b: &Vec3) -> bool {
     (a - b).norm_squared() <= MIN_ANGLE2
 }

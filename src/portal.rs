@@ -177,8 +177,8 @@ fn discovery_dir(
     }
 }
 
-/// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`CENTRAL_RING_TAN`]. Returns their points as
-/// a portal; `None` if the set is full, or if the three points are nearly on a line.
+/// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`CENTRAL_RING_TAN`]. Returns their
+/// points as a portal; `None` if the set is full, or if the three points are nearly on a line.
 #[cold]
 #[inline(never)]
 pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
@@ -191,7 +191,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
-    // Also for NaN.
+    // At most 60 degrees, also for NaN.
     let tilt = lesser(tilt, CENTRAL_RING_TAN);
     let turns = [[-0.5, half], [-0.5, -half], [1.0, 0.0]];
     let mut corners = [Vertex::default(); 3];

@@ -12,8 +12,8 @@ use super::programs::{Method, Output, run_all};
 /// that stopped early.
 const MAX_DEEP_SHARE: f64 = 2e-3;
 
-/// The counters that are zero on this library: what the program got, before FCL or ODE has read it, and, judged by bounds
-/// of the exact depth, a proof and answers of this library.
+/// The counters of compare.sh that are zero on this library: hits with a direction or depth that is no number, as the
+/// program got them; proofs that a support value contradicts; wrong answers.
 const FORBIDDEN: &str = "counted.broken counted.contradicted own.missed own.spurious own.unsound";
 
 /// Returns why the answers to single queries on this library, the second, are worse than allowed.

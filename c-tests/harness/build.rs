@@ -103,8 +103,8 @@ pub struct Program {
 }
 
 impl Program {
-    /// Returns the program of a source file in `c-tests/` (or elsewhere, by an absolute path) on this library: C99, or C++17
-    /// where the file is called so.
+    /// Returns the program of a source file in `c-tests/` (or elsewhere, by an absolute path) on this library: C++17 if its
+    /// name ends in `.cpp`, else C99.
     pub fn new(source: impl AsRef<Path>) -> Program {
         let source = root().join("c-tests").join(source);
         let cpp = source.extension() == Some("cpp".as_ref());

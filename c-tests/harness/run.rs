@@ -79,7 +79,7 @@ impl Executable {
         Executable { path: path.into(), launcher: Vec::new(), library_path: None, tools: true }
     }
 
-    /// Sets the folder of this library, on which the program runs, if not on the system's, and whether tools run it.
+    /// Sets the folder of this library (`None`: the program runs on the system's libccd), and whether `C_TESTS_RUNNER` runs it.
     pub fn with(self, library_path: Option<PathBuf>, tools: bool) -> Executable {
         Executable { library_path, tools, ..self }
     }

@@ -3,11 +3,12 @@
 
 //! Finds points of a curved surface around the deepest one.
 //!
-//! Two opposite directions are evaluated, 45° from that of the center from the object's own deepest vertex. The mirror images
-//! of both vertices in the plane of the normal through these two points are the other two: right for bodies of revolution. If
-//! they cannot be, these directions are evaluated too. Of a disc the points between them on its rim are computed.
+//! The *mirror plane* contains the normal, the object's center and its own deepest vertex. Two opposite directions are
+//! evaluated, 45° from that plane. The mirror images of both vertices are the other two: right for bodies of revolution. If
+//! they cannot be, their directions are evaluated too. Of a disc the points between the four on its rim are computed.
 //!
-//! (The contact's deepest point is a mean of witness points. A center as close to the normal as its error shows another plane.)
+//! (A plane through the contact's deepest point, a mean of witness points, would be another one if the center is nearly
+//! above that point.)
 
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, four_directions, is_within};

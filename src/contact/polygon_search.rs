@@ -129,9 +129,8 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         }
     }
 
-    /// Returns whether an evaluated direction tilted towards `out` returned one of two vertices; `is_side`: towards it within
-    /// 27°. (The directions that return a vertex form a convex set, which
-    /// mostly contains the normal.)
+    /// Returns whether an evaluated direction tilted towards `out` (`is_side`: within 27° of it) returned one of two vertices.
+    /// (The directions that return a vertex form a convex set, which mostly contains the normal.)
     #[inline(always)]
     fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
         let same = self.vertex_offset;

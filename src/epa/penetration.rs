@@ -222,7 +222,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// Returns whether the center of D is closer to the origin than the upper bound, along unit `dir`: the polytope will
+    /// Returns whether the origin is closer to the center, along unit `dir`, than the upper bound: the polytope will then
     /// reach all around the origin.
     #[inline(always)]
     fn is_central(&self, dir: &Vec3) -> bool {

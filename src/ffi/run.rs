@@ -33,8 +33,8 @@ pub fn libccd_code_of(stop: &Stop) -> c_int {
     }
 }
 
-/// Runs a query with the caller's state, or a cold one where `warm` is NULL, and with memory that is allocated
-/// if the query needs it. Stores the new state unless there is a fault.
+/// Runs a query with the caller's state, or a cold one where `warm` is NULL, and with memory that is allocated if the query
+/// needs it. Stores the new state unless there is a fault.
 ///
 /// # Errors
 /// As [`Solver::run`]; [`Fault::BadInput`] for an argument.

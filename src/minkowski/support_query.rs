@@ -135,8 +135,8 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         self.md.supports()
     }
 
-    /// Evaluates the support point along unit `dir` and records its sizes, nothing else: for queries that
-    /// store points themselves.
+    /// Evaluates the support point along unit `dir` and records its sizes, nothing else: for queries that store points
+    /// themselves.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].

@@ -1,8 +1,8 @@
 /* SPDX-FileCopyrightText: 2026 The warmccd developers
  * SPDX-License-Identifier: BSD-3-Clause */
 
-/* Catches exceptions, and jumps at longjmp, which this object defines. The buffer of a jump that stays within the work
- * (Lua's, in a callback) lies on the stack below the guard. */
+/* Catches exceptions, and jumps: this object defines longjmp. The buffer of a jump that stays within the work (Lua's, in a
+ * callback) lies on the stack below the guard. */
 
 #include "tools/compare/guard.h"
 

@@ -340,7 +340,7 @@ static int judge_answers(const compare_t *compare, judged_t *s)
 }
 
 /* Bounds the truth and judges both answers. Where one is wrong all directions are checked: callbacks that contradict each
- * other describe no shape, or make the depth uncertain by as much. */
+ * other describe no shape or, within the tolerance, make a touch uncertain by as much for each object. */
 static judgement_t judge(const compare_t *compare, judged_t *s)
 {
     compare_call_t *c = &compare->counts->call[s->q->call];

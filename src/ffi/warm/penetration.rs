@@ -39,14 +39,14 @@ pub struct ccd_penetration_t {
     /// ccdPenetrationAlong.
     pub normal: ccd_vec3_t,
     /// Contact position, CCD_WANT_POS: the center of pressure, an estimate of the centroid of the
-    /// overlap volume, projected along normal to the plane midway between the two support planes.
-    /// At most half the depth from both objects, within the tolerance; up to 1 mm farther in 2 of a
+    /// overlap volume, projected along normal to the plane midway between the two support planes. At
+    /// most half the depth from both objects, within the tolerance; up to 1 mm farther in 2 of a
     /// million hits of slender metre-sized curved bodies. Root mean square error for objects of a
-    /// quarter metre and depths up to a millimetre: 0.1 mm for faces of 3 to 10 corners on a floor, at
-    /// most 0.5 mm (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for round
-    /// objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller object's
-    /// size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos moves by at
-    /// most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
+    /// quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to 10
+    /// corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
+    /// round objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller
+    /// object's size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
+    /// moves by at most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
     /// ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
     /// Witness point of obj1, CCD_WANT_POINTS: in obj1 and on its support plane, within the larger
