@@ -5,7 +5,7 @@
 # Installs missing Debian packages, as root or with sudo. First reports a Rust that is too old.
 #   setup.sh        packages of the tests
 #   setup.sh main   packages of the main job
-#   setup.sh compare  of compare.sh: also a C++ compiler
+#   setup.sh compare  packages of compare.sh: those of the main job, and a C++ compiler
 #   setup.sh check  installs nothing; prints the tests' missing packages in one line
 
 set -eu
