@@ -179,6 +179,7 @@ fn discovery_dir(
 
 /// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`CENTRAL_RING_TAN`]. Returns their
 /// points as a portal; `None` if the set is full, or if the three points are nearly on a line.
+// Cold, so that shallow contacts are one straight path: codegen, see README.
 #[cold]
 #[inline(never)]
 pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(

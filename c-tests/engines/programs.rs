@@ -65,10 +65,10 @@ impl Output {
         keys.split(' ').map(|key| self.value(key)).sum()
     }
 
-    /// Describes those of these counters that were printed and are not zero.
+    /// Describes those of these counters, which the program must have printed, that are not zero.
     pub fn nonzero(&self, keys: &str) -> Vec<String> {
-        let nonzero = keys.split(' ').filter_map(|key| Some((key, self.get(key).filter(|n| *n != 0.0)?)));
-        nonzero.map(|(key, n)| format!("{}: {key} {n}", self.method)).collect()
+        let counters = keys.split(' ').map(|key| (key, self.value(key)));
+        counters.filter(|(_, n)| *n != 0.0).map(|(key, n)| format!("{}: {key} {n}", self.method)).collect()
     }
 
     /// Returns the lines about wrong results, `wrong: …`.

@@ -21,6 +21,11 @@ pub fn collide_failures([theirs, ours]: &[Output; 2]) -> Vec<String> {
     assert_eq!(theirs.value("poses.queried"), ours.value("poses.queried"), "not the same poses");
     let mut failures = ours.nonzero(FORBIDDEN);
     failures.extend(ours.nonzero("own.deep counted.threw counted.endless counted.memory counted.no_shape"));
+    // ODE's cylinder contradicts itself at touches; the judge allows for it there.
+    let [uncertain, judged] = ["uncertain", "judged"].map(|key| ours.value(&format!("counted.{key}")));
+    if uncertain > 0.01 * judged {
+        failures.push(format!("{uncertain} of {judged} right only within the error of the callbacks"));
+    }
     let threw = |output: &Output| output.get("poses.threw").unwrap_or_default();
     if threw(ours) > threw(theirs) {
         failures.push(format!("{} exceptions, on libccd {}", threw(ours), threw(theirs)));

@@ -371,13 +371,18 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let proof = match self.proof {
             Some(proof) => proof,
             None => {
-                // The depth is of the order of rounding: the hull of the points contains the origin, and has no volume.
-                let SupportPlane { dir, depth, .. } = self.query.upper;
+                // No tetrahedron has a volume: the depth is mostly of the order of rounding. The points that GJK finds
+                // coincide, and are off by the depth; the support points may be less far off.
+                let SupportPlane { dir, depth, point } = self.query.upper;
+                let mut points = [point.v1, point.v2];
+                if self.request.wants_points && !((point.v - dir * depth).norm() <= depth) {
+                    points = self.prove_overlap(&dir)?.witnesses().into();
+                }
                 Proof {
                     upper: depth,
                     dir,
                     lower: 0.0,
-                    points: self.prove_overlap(&dir)?.witnesses().into(),
+                    points,
                 }
             }
         };
@@ -668,6 +673,24 @@ mod tests {
                 assert_eq!(hit.status, Status::Converged);
                 assert!((hit.depth - depth).abs() <= TOLERANCE, "{hit:?} {depth}");
             }
+        }
+    }
+
+    /// A plate of a thickness of the order of rounding: no tetrahedron of its corners has a volume.
+    #[test]
+    #[cfg(not(feature = "single"))]
+    fn the_witness_points_of_an_overlap_without_volume_are_close_to_each_other() {
+        let mut r = Random::new(45);
+        let thin = 8e-15;
+        for _ in 0..100 {
+            let at = Vec3::new(r.within(-0.9, 0.9), r.within(-0.9, 0.9), 0.0);
+            let plate: Vec<Vec3> = (corners(Vec3::new(1.0, 1.0, thin)).iter())
+                .map(|p| p + at)
+                .collect();
+            let md = difference(hull(&plate), point());
+            let hit = run(&md, None, MAX_PROVEN_POINTS, None).unwrap();
+            let apart = (hit.point1 - hit.point2).norm();
+            assert!(apart <= 4.0 * thin, "{hit:?} {apart}");
         }
     }
 

@@ -40,7 +40,8 @@ const LOOSE_REL_TOL: f64 = 0.03;
 const EXACT_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
 /// The distance up to which two points of exact fits, or the core and the origin, coincide, in radii.
 pub const SAME_CENTER_REL: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-5 };
-/// The least squared angle, radians, between two samples from which a radius or a curvature is computed.
+/// The least squared angle, radians, between two samples from which a radius or a curvature is computed; closer directions
+/// of a local search are equal.
 pub const MIN_ANGLE2: f64 = 1e-10;
 
 /// The source of a direction.

@@ -33,6 +33,7 @@ typedef struct {
     uint64_t sampled, judged, overlaps, timed;
     /* reasons why sampled queries were not judged; memory: answered differently when repeated */
     uint64_t threw, endless, memory, no_shape;
+    uint64_t uncertain; /* an answer is right only within the error of callbacks that contradict each other */
     uint64_t contradicted; /* a proven lower bound above a support value: this library's fault */
     compare_side_t side[COMPARE_SIDES];
     uint64_t minimum_calls, minimum_nanoseconds;

@@ -325,7 +325,7 @@ static int request_answers(const compare_t *compare, judged_t *s, const answer_t
 /* How a judgement ended. */
 typedef enum { JUDGED, NO_SHAPE, THREW } judgement_t;
 
-/* Judges both answers; returns whether one is wrong. */
+/* Judges both answers; returns how many are wrong. */
 static int judge_answers(const compare_t *compare, judged_t *s)
 {
     int wrong = 0;
@@ -334,7 +334,7 @@ static int judge_answers(const compare_t *compare, judged_t *s)
         s->verdict[side] = answer_verdict(s->q, &s->answer[side], &s->truth);
         if (s->verdict[side] == VERDICT_RIGHT && has_depth(s->q, &s->answer[side]))
             check_move(compare, s, side);
-        wrong |= s->verdict[side] != VERDICT_RIGHT;
+        wrong += s->verdict[side] != VERDICT_RIGHT;
     }
     return wrong;
 }
@@ -357,12 +357,13 @@ static judgement_t judge(const compare_t *compare, judged_t *s)
         } else
             s->truth.lower = s->truth.upper;
     }
-    if (judge_answers(compare, s)) {
+    const int wrong = judge_answers(compare, s);
+    if (wrong) {
         const double uncertain = inconsistency(s->samples, ALL);
         if (uncertain > most_inconsistency(s))
             return NO_SHAPE;
         s->truth.contact_eps += 2 * uncertain;
-        judge_answers(compare, s);
+        count_add(&c->uncertain, judge_answers(compare, s) < wrong);
     }
     return JUDGED;
 }

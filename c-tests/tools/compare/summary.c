@@ -227,7 +227,7 @@ static void print_fields(void)
     for (int i = 0; i < LIBCCD_CALL_COUNT; i++)
         add_call(&sum, &all.call[i]);
     printf("counted");
-    print_numbers("", "queries returned hits broken sampled judged overlaps timed threw endless memory no_shape contradicted",
+    print_numbers("", "queries returned hits broken sampled judged overlaps timed threw endless memory no_shape uncertain contradicted",
                   &sum);
     for (int i = 0; i < COMPARE_SIDES; i++) {
         const compare_side_t *s = &sum.side[i];

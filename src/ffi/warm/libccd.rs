@@ -31,7 +31,7 @@ pub(in crate::ffi) unsafe fn libccd_penetration(
 ) -> c_int {
     let solver = match interface {
         Interface::Gjk => Solver::Proven,
-        _ => Solver::Global,
+        Interface::Mpr | Interface::Extension => Solver::Global,
     };
     let want = Want {
         pos: !pos.is_null(),
