@@ -9,11 +9,11 @@ use crate::harness::{self, Executable, Link, Precision, must_succeed, output_dir
 use std::process::Command;
 
 /// The programs whose simulation steps are timed and whose queries compare.sh's screen shows: title, file,
-/// arguments, number of steps.
+/// arguments with START for the number of the start, number of steps.
 pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
-    ("ODE, a pile", "ode_pile.c", "1 1500 32 pile", 1500.0),
-    ("MuJoCo 2, a pile", "mujoco_pile.c", "1 1500 30 pile", 1500.0),
-    ("DART over FCL, a pile", "dart_pile.cpp", "1 3000 15 fcl", 3000.0),
+    ("ODE, a pile", "ode_pile.c", "START 1500 32 pile", 1500.0),
+    ("MuJoCo 2, a pile", "mujoco_pile.c", "START 1500 30 pile", 1500.0),
+    ("DART over FCL, a pile", "dart_pile.cpp", "START 3000 15 fcl", 3000.0),
     ("FCL, primitives that drift", "fcl_scene.cpp", "0 through primitives 300 200 0", 300.0),
 ];
 

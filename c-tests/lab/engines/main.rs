@@ -73,7 +73,7 @@ fn long() -> bool {
 
 /// Prints the screens, and writes the first into this folder's page.
 fn screens() {
-    let screens = CONSUMERS.map(|(_, file, arguments, _)| consumers::screen(file, arguments));
+    let screens = CONSUMERS.map(|(_, file, arguments, _)| consumers::screen(file, &arguments.replace("START", "1")));
     println!("{}", screens.join("\n\n"));
     let first = format!("\n```text\n{}\n```\n", screens[0]);
     write_between_marks("c-tests/engines/README.md", "screens", &first);
@@ -82,7 +82,7 @@ fn screens() {
 /// Prints the processor time of a step on both libraries, which take turns, and writes it into the
 /// front page.
 fn steps() {
-    let table = format!("{}\n\n{}.\n", tables::step_table(5), harness::machine());
+    let table = format!("{}\n\n{}.\n", tables::step_table(3, 8), harness::machine());
     println!("{table}");
     write_between_marks("README.md", "steps", &table);
 }

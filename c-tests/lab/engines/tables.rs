@@ -107,13 +107,18 @@ fn least_of<const N: usize>(rounds: usize, methods: &[Method; N], arguments: &st
     least
 }
 
-/// Returns milliseconds of processor that a step of each consumer's program takes on either library: the
-/// least of so many rounds in which the libraries take turns.
-pub fn step_table(rounds: usize) -> String {
+/// Returns milliseconds of processor that a step of each consumer's program takes on either library: the mean of so many
+/// starts, of each the least of so many rounds in which the libraries take turns.
+pub fn step_table(rounds: usize, starts: usize) -> String {
     let line = |(title, file, arguments, steps): (&str, &str, &str, f64)| {
         let methods = on_both(program(file).flag("-DTIMED"));
-        let [theirs, ours] =
-            least_of(rounds, &methods, arguments, "processor.seconds").map(|seconds| 1000.0 * seconds / steps);
+        let mut sums = [0.0; 2];
+        for start in 1..=starts {
+            let arguments = arguments.replace("START", &start.to_string());
+            let seconds = least_of(rounds, &methods, &arguments, "processor.seconds");
+            sums.iter_mut().zip(seconds).for_each(|(sum, seconds)| *sum += seconds);
+        }
+        let [theirs, ours] = sums.map(|sum| 1000.0 * sum / (steps * starts as f64));
         vec![title.to_owned(), format!("{theirs:.3}"), format!("{ours:.3}"), format!("{:.2}", ours / theirs)]
     };
     markdown("program|libccd, ms a step|here|ratio", CONSUMERS.map(line))
