@@ -44,7 +44,7 @@ use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::CENTRAL_RING_TAN;
+use crate::minkowski::tuning::{CENTRAL_RING_TAN, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{discover, refine, ring};
@@ -55,9 +55,6 @@ use crate::types::{Penetration, Status};
 /// for the rounding of a plane and of a point above it if the size of D is twice the world extent; the rest is a
 /// reserve.
 const ROUNDING_GAP_EPS: f64 = 32.0;
-/// The least squared turn of the ray, radians, for which it is evaluated again from a new interior point: 31 degrees. For
-/// smaller turns the support point of the old ray is close enough for the start of a portal.
-const MIN_NEW_RAY_TURN2: f64 = 0.3;
 
 /// The input of a query besides the support functions.
 pub struct EpaRequest<'a> {
@@ -215,7 +212,8 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         if let Some(n) = normalise_unscaled(&-self.interior.v) {
             let turn2 = (n - *ray).norm_squared();
             *ray = n;
-            if turn2 > MIN_NEW_RAY_TURN2 {
+            // Else the support point of the old ray is close enough for the start of a portal.
+            if turn2 > SMALL_PART {
                 self.query.evaluate(set, ray)?;
             }
         }
