@@ -92,20 +92,21 @@ fi
 mkdir -p "$target/compare"
 work=$(cd "$target/compare" && pwd)
 
-# build OUT FLAG...: unless OUT is newer than all sources; under a name of its own first, for others may be running
-# the old one
+# build COMPILER OUT FLAG...: unless OUT is newer than all sources; under a name of its own first, for others may be
+# running the old one
 build() {
-    out=$1
-    shift
+    compiler=$1 out=$2
+    shift 2
     [ -e "$work/$out" ] && [ -z "$(find "$here/compare.sh" "$here/tools/compare" "$here/harness" "$here/../include" -newer "$work/$out")" ] && return
-    cc -O2 -Wall -Wextra -I"$here" -I"$here/../include" "$@" -o "$work/$out.$$" -lm -ldl -lpthread
+    "$compiler" -O2 -Wall -Wextra -I"$here" -I"$here/../include" "$@" -o "$work/$out.$$"
     mv "$work/$out.$$" "$work/$out"
 }
 
 (
     cd "$here/tools/compare"
-    build compare.so -shared -fPIC -fexceptions -fvisibility=hidden catch.cpp query.c judge_query.c write_case.c preload.c -lstdc++
-    build screen summary.c
+    build c++ catch.o -c -fPIC -fvisibility=hidden catch.cpp
+    build cc compare.so -shared -fPIC -fexceptions -fvisibility=hidden "$work/catch.o" query.c judge_query.c write_case.c preload.c -lstdc++ -lm -ldl -lpthread
+    build cc screen summary.c -lm
 )
 
 # --- the two libraries -----------------------------------------------------------------
