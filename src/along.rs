@@ -74,6 +74,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         iterations: 0,
     };
     let off = first.v - dir * dir.dot(&first.v);
+    // If the support point is on the ray, the ray leaves D there: the bounds meet.
     let lower = if off.norm() > ray.query.scale.height_eps() {
         ray.find_lower_bound(&mut portal)?
     } else {

@@ -18,7 +18,7 @@
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
 //! so that the portal of a shallow contact is small and close to the minimum. If v1 is on the ray itself, the portal
 //! is a *ring*: the support points of three directions around the ray. A caller whose ray must cross the portal gets
-//! perpendicular directions there.
+//! perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] and no discovery.
 //!
 //! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
 //! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
@@ -179,7 +179,7 @@ fn discovery_dir(
 
 /// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`CENTRAL_RING_TAN`]. Returns their
 /// points as a portal; `None` if the set is full, or if the three points are nearly on a line.
-// Cold, so that shallow contacts are one straight path: codegen, see README.
+// Cold: codegen, see README.
 #[cold]
 #[inline(never)]
 pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(

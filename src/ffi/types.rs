@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Defines libccd's C types with the names and the layout of libccd.so.2; a test asserts sizes and
-//! offsets.
+//! Defines libccd's C types with the names and the layout of libccd.so.2; sizes and offsets are
+//! asserted below.
 
 #![allow(non_camel_case_types, missing_docs)]
 
@@ -150,47 +150,40 @@ pub struct ccd_pt_t {
     pub nearest_type: c_int,
 }
 
-#[cfg(test)]
+/// Asserts sizes and offsets at compile time: `double / single` bytes, with the 8-byte
+/// pointers and longs of LP64.
 #[cfg(all(unix, target_pointer_width = "64"))]
-mod tests {
-    use super::*;
-    use core::mem::offset_of;
-
-    /// Asserts sizes and offsets: `double / single` bytes, with the 8-byte pointers and longs of LP64.
-    macro_rules! layout {
-        ($($type:ident: $double:literal / $single:literal {
-            $($field:ident: $off_double:literal / $off_single:literal),* $(,)?
-        })*) => { $(
+macro_rules! layout {
+    ($($type:ident: $double:literal / $single:literal {
+        $($field:ident: $off_double:literal / $off_single:literal),* $(,)?
+    })*) => { $(
+        const _: () = {
             let double = size_of::<Real>() == 8;
-            assert_eq!(size_of::<$type>(), if double { $double } else { $single });
-            $(assert_eq!(
-                offset_of!($type, $field),
-                if double { $off_double } else { $off_single }
-            );)*
-        )* };
-    }
+            assert!(size_of::<$type>() == if double { $double } else { $single });
+            $(assert!(core::mem::offset_of!($type, $field)
+                == if double { $off_double } else { $off_single });)*
+        };
+    )* };
+}
 
-    #[test]
-    fn sizes_and_offsets_are_those_of_libccd() {
-        layout! {
-            ccd_vec3_t: 24 / 12 { v: 0 / 0 }
-            ccd_quat_t: 32 / 16 { q: 0 / 0 }
-            ccd_t: 72 / 64 {
-                first_dir: 0 / 0, support1: 8 / 8, support2: 16 / 16, center1: 24 / 24, center2: 32 / 32,
-                max_iterations: 40 / 40,
-                epa_tolerance: 48 / 48, mpr_tolerance: 56 / 52, dist_tolerance: 64 / 56,
-            }
-            ccd_support_t: 72 / 36 { v: 0 / 0, v1: 24 / 12, v2: 48 / 24 }
-            ccd_simplex_t: 296 / 148 { ps: 0 / 0, last: 288 / 144 }
-            ccd_list_t: 16 / 16 { next: 0 / 0, prev: 8 / 8 }
-            ccd_pt_el_t: 56 / 40 { kind: 0 / 0, dist: 8 / 4, witness: 16 / 8, list: 40 / 24 }
-            ccd_pt_vertex_t: 152 / 96 { el: 0 / 0, id: 56 / 40, v: 64 / 44, edges: 136 / 80 }
-            ccd_pt_edge_t: 120 / 104 { el: 0 / 0, vertex: 56 / 40, faces: 72 / 56, vertex_list: 88 / 72 }
-            ccd_pt_face_t: 80 / 64 { el: 0 / 0, edge: 56 / 40 }
-            ccd_pt_t: 72 / 64 {
-                vertices: 0 / 0, edges: 16 / 16, faces: 32 / 32,
-                nearest: 48 / 48, nearest_dist: 56 / 56, nearest_type: 64 / 60,
-            }
-        }
+#[cfg(all(unix, target_pointer_width = "64"))]
+layout! {
+    ccd_vec3_t: 24 / 12 { v: 0 / 0 }
+    ccd_quat_t: 32 / 16 { q: 0 / 0 }
+    ccd_t: 72 / 64 {
+        first_dir: 0 / 0, support1: 8 / 8, support2: 16 / 16, center1: 24 / 24, center2: 32 / 32,
+        max_iterations: 40 / 40,
+        epa_tolerance: 48 / 48, mpr_tolerance: 56 / 52, dist_tolerance: 64 / 56,
+    }
+    ccd_support_t: 72 / 36 { v: 0 / 0, v1: 24 / 12, v2: 48 / 24 }
+    ccd_simplex_t: 296 / 148 { ps: 0 / 0, last: 288 / 144 }
+    ccd_list_t: 16 / 16 { next: 0 / 0, prev: 8 / 8 }
+    ccd_pt_el_t: 56 / 40 { kind: 0 / 0, dist: 8 / 4, witness: 16 / 8, list: 40 / 24 }
+    ccd_pt_vertex_t: 152 / 96 { el: 0 / 0, id: 56 / 40, v: 64 / 44, edges: 136 / 80 }
+    ccd_pt_edge_t: 120 / 104 { el: 0 / 0, vertex: 56 / 40, faces: 72 / 56, vertex_list: 88 / 72 }
+    ccd_pt_face_t: 80 / 64 { el: 0 / 0, edge: 56 / 40 }
+    ccd_pt_t: 72 / 64 {
+        vertices: 0 / 0, edges: 16 / 16, faces: 32 / 32,
+        nearest: 48 / 48, nearest_dist: 56 / 56, nearest_type: 64 / 60,
     }
 }
