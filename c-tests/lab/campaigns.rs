@@ -11,6 +11,7 @@
 //! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
 //! | `positions` | how far `pos` is from the objects (`tests/extension/pos.c`) | the share of two million hits: 1 |
+//! | `jumps` | how often `pos` jumps, by shape (`tests/extension/pos.c`) | steps, seed: 300000 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
 //! | `planar` | flat objects in a plane (`tests/extension/planar.c`) | pairs: 20000 |
 //! | `truth` | the truth (`truth.c`) against itself, the certified pairs and the recorded contacts | random pairs, step: 100000 1 |
@@ -68,6 +69,7 @@ fn main() {
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "worst" => show(&worst_case(), &given, &["1000000", "1"]),
         "positions" => show(&elsewhere("extension/pos"), &list("near"), &["", "1"]),
+        "jumps" => show(&elsewhere("extension/pos"), &list("jumps"), &["", "300000", "1"]),
         "planar" => show(&elsewhere("extension/planar"), &given, &["20000"]),
         "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]
@@ -77,7 +79,7 @@ fn main() {
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
             eprintln!(
-                "usage: campaigns rates|wide|worst|states|planar|touches|positions|truth|ledger|determinism [ARGUMENT...]"
+                "usage: campaigns rates|wide|worst|states|planar|touches|positions|jumps|truth|ledger|determinism [ARGUMENT...]"
             );
             std::process::exit(2);
         }

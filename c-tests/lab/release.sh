@@ -64,6 +64,7 @@ step wide campaign wide
 step states campaign states
 step touches campaign touches
 step positions campaign positions
+step jumps campaign jumps
 step worst campaign worst
 step truth campaign truth
 step bookworm packages tests bookworm

@@ -8,6 +8,8 @@
  *   pos faces [N]     Prisms of 3 to 10 corners lean on a floor, 0.1 to 1 mm deep (1 to 3 mm in single precision): it is that of
  *                     the lower face by formula, the same for the swapped pair and from a warm state, and moves by less than
  *                     2 mm more than four times the motion, where the normal stays. 300,000 / N steps. And two capsules.
+ *   pos jumps N SEED  Bodies of a quarter metre at rest on others move along the contact, N steps: how often pos jumps, where the
+ *                     exact one does not, and how far those of a cold query, a warm one and the swapped pair are apart.
  *   pos pressure [N]  It is that by integration: bodies of a quarter metre that tilt, slide, tip, roll and turn on a floor, 1 mm
  *                     and 0.01 mm deep, in steps so small that a discontinuity shows; random pairs at depths of 1 to 30 % of the
  *                     smaller body's radius. One sweep and depth in N. */
@@ -21,7 +23,7 @@
 
 static const int single = sizeof(ccd_real_t) == sizeof(float);
 static const double HALF = 0.125; /* radius and half height of a prism, half a box, metres */
-static const double up[3] = {0, 0, 1};
+static const double pi = 3.14159265358979323846, up[3] = {0, 0, 1};
 
 static ccd_t settings(double tolerance)
 {
@@ -84,6 +86,234 @@ static void set_on_floor(shape_t *s, const double outer[9], const double inner[9
     shape_turn(s, rot);
     shape_move(s, 0, 0, 0);
     shape_move(s, x, y, -depth - (double)lowest(s).v[2]);
+}
+
+typedef struct { double square, worst, step; int poses; } errors_t;
+
+/* --- jumps ------------------------------------------------------------------------------------ */
+
+enum { PATH = 20, CORNERS = 10 };
+
+/* Bodies: prisms by their number of corners, and others. */
+enum { BODY_BOX, BODY_HULL, BODY_CYLINDER, BODY_PRISM, BODY_CAPSULE = BODY_PRISM + CORNERS - 2, BODY_CONE, BODIES };
+static const char *const body_name[BODIES] = {"box", "hull", "cylinder", "3 corners", "4 corners", "5 corners", "6 corners", "7 corners",
+                                              "8 corners", "9 corners", "10 corners", "capsule", "cone"};
+
+/* Makes a body of a quarter metre: of a prism every other one regular, else with corners at random places of an ellipse. */
+static shape_t make_body(int kind, int regular, ccd_real_t verts[6 * CORNERS])
+{
+    const double width = regular ? 1 : uniform(0.6, 1);
+    switch (kind) {
+    case BODY_BOX: return shape_box(HALF, HALF * width, HALF * (regular ? 1 : uniform(0.4, 1)));
+    case BODY_CYLINDER: return shape_cylinder(HALF * width, HALF);
+    case BODY_CAPSULE: return shape_capsule(HALF * 0.5 * width, HALF);
+    case BODY_CONE: return shape_cone(HALF * width, HALF);
+    }
+    for (int i = 0; kind == BODY_HULL && i < 6 * CORNERS; i++)
+        verts[i] = (ccd_real_t)uniform(-HALF, HALF);
+    for (int i = 0; i < kind; i++) {
+        const double angle = 2 * pi * (i + (regular ? 0 : uniform(-0.35, 0.35))) / kind;
+        for (int top = 0; top < 2; top++) {
+            ccd_real_t *v = verts + 3 * (i + top * kind);
+            v[0] = (ccd_real_t)(HALF * width * cos(angle));
+            v[1] = (ccd_real_t)(HALF * sin(angle));
+            v[2] = (ccd_real_t)(top ? HALF : -HALF);
+        }
+    }
+    return shape_polytope(verts, kind == BODY_HULL ? CORNERS : 2 * kind);
+}
+
+/* Turns a body onto its end; or, unless it `stands`, one in three each, onto any face or side, or any way. Then leans it. */
+static void lay(shape_t *s, int stands, double lean)
+{
+    static const double down[3] = {0, 0, -1};
+    const int way = stands ? 0 : random_below(3);
+    const double side = uniform(-pi, pi);
+    double n[3] = {0, 0, -1}, axis[3], rot[9];
+    faces_t faces;
+    if (way == 1 && s->type == SHAPE_POLYTOPE) {
+        polytope_faces(s, &faces);
+        memcpy(n, faces.n[random_below(faces.count)], sizeof n);
+    } else if (way == 1) {
+        n[0] = 1;
+        n[2] = s->type == SHAPE_CONE ? (double)(s->p[0] / s->p[1]) / 2 : 0;
+    }
+    truth_cross3(n, down, axis);
+    rotation_about(axis[0], axis[1], axis[2], atan2(sqrt(truth_dot3(axis, axis)), -n[2]), rot);
+    shape_turn(s, rot);
+    if (way == 2)
+        turn_randomly(s);
+    rotation_about(0, 0, 1, uniform(-pi, pi), rot);
+    shape_turn_by(s, rot, 0, 0, 0);
+    rotation_about(cos(side), sin(side), 0, lean, rot);
+    shape_turn_by(s, rot, 0, 0, 0);
+}
+
+/* Bodies at rest on others. */
+static const struct {
+    const char *name;
+    int stand, floor; /* on their ends; on a floor (1), a body (0) or either (-1) */
+    double depth[2];
+    double most; /* jumps in 1000 steps, without cones */
+} settings_of[] = {{"stands on a floor", 1, 1, {1e-5, 1e-3}, 0.1},
+                   {"stands on a body", 1, 0, {1e-5, 1e-3}, 0.2},
+                   {"any way on either", 0, -1, {1e-5, 1e-3}, 0.5},
+                   {"any way, deeper", 0, -1, {1e-3, 5e-2}, 3}};
+
+/* Ways to find pos at a pose, and what was seen on one of them. */
+enum { COLD, WARM, SWAPPED, WAYS };
+typedef struct {
+    long steps, jumps, wide, poses, apart; /* wide: by more than 10 mm; apart: 5 mm or more from that of a cold query */
+    double worst, differs;
+} way_t;
+
+typedef struct {
+    int hit;
+    double pos[3], normal[3];
+} found_t;
+
+static found_t find(const shape_t *a, const shape_t *b, int way, ccd_warm_t *warm)
+{
+    ccd_penetration_t p;
+    found_t f;
+    f.hit = way == SWAPPED ? overlap(b, a, NULL, 1e-7, CCD_WANT_POS, &p) : overlap(a, b, way == WARM ? warm : NULL, 1e-7, CCD_WANT_POS, &p);
+    copy(&p.pos, f.pos);
+    copy(&p.normal, f.normal);
+    for (int i = 0; i < 3 && way == SWAPPED; i++)
+        f.normal[i] = -f.normal[i];
+    return f;
+}
+
+/* Computes the exact center of pressure of a hit, in the plane of its pos. Returns 0 where there is none. */
+static int exact_position(const shape_t *a, const shape_t *b, double exact[3], const found_t *f)
+{
+    ccd_penetration_t p;
+    double middle[3];
+    overlap(a, b, NULL, 1e-7, CCD_WANT_POINTS, &p);
+    for (int i = 0; i < 3; i++)
+        middle[i] = ((double)p.point1.v[i] + (double)p.point2.v[i]) / 2;
+    if (!(center_of_pressure(a, b, f->normal, middle, exact) > 0))
+        return 0;
+    project(f->normal, exact, f->pos);
+    return 1;
+}
+
+/* Moves b along its contact with a, and across it by up to a tenth of the depth. */
+static void check_path(const shape_t *a, shape_t b, double depth, way_t seen[WAYS], errors_t *error)
+{
+    found_t last[WAYS] = {{0}};
+    shape_t last_b = b;
+    ccd_warm_t warm;
+    double along[3], rot[9], away[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    const double turn = random_below(2) ? 0 : uniform(-1, 1) * 1e-3;
+    memset(&warm, 0, sizeof warm);
+    for (int step = 0; step < PATH; step++) {
+        const double by = uniform(2.5e-4, 5e-4), sinks = uniform(-0.1, 0.1) * depth, moved = fabs(by) + fabs(sinks) + 2 * HALF * fabs(turn);
+        if (step) {
+            const double *n = last[COLD].normal;
+            const double x = (double)b.pos[0], y = (double)b.pos[1], z = (double)b.pos[2];
+            truth_cross3(n, away, along);
+            const double length = sqrt(truth_dot3(along, along));
+            rotation_about(n[0], n[1], n[2], turn, rot);
+            shape_move(&b, 0, 0, 0);
+            shape_turn_by(&b, rot, x, y, z);
+            shape_shift(&b, by / length, along);
+            shape_shift(&b, sinks, n);
+        }
+        for (int way = 0; way < WAYS; way++) {
+            way_t *w = &seen[way];
+            found_t now = find(a, &b, way, &warm), cold = way ? last[COLD] : now;
+            if (!now.hit)
+                return;
+            if (step && distance(now.normal, last[way].normal) < 1e-6) {
+                double exact[2][3], beyond = distance(now.pos, last[way].pos);
+                w->steps++;
+                if (beyond > 2e-3 + 4 * moved && exact_position(a, &b, exact[0], &now) && exact_position(a, &last_b, exact[1], &last[way])) {
+                    for (int i = 0; i < 3; i++)
+                        exact[0][i] = now.pos[i] - exact[0][i] - (last[way].pos[i] - exact[1][i]);
+                    beyond = sqrt(truth_dot3(exact[0], exact[0]));
+                }
+                if (beyond > 2e-3 + 4 * moved) {
+                    w->jumps++;
+                    w->wide += beyond > 1e-2;
+                    w->worst = fmax(w->worst, beyond);
+                }
+            }
+            if (distance(now.normal, cold.normal) < 1e-6) {
+                w->poses++;
+                w->apart += distance(now.pos, cold.pos) > 5e-3;
+                w->differs = fmax(w->differs, distance(now.pos, cold.pos));
+            }
+            last[way] = now;
+        }
+        if (step == PATH / 2) {
+            double exact[3];
+            if (exact_position(a, &b, exact, &last[COLD])) {
+                const double off = distance(exact, last[COLD].pos);
+                error->square += off * off;
+                error->worst = fmax(error->worst, off);
+                error->poses++;
+            }
+        }
+        last_b = b;
+    }
+}
+
+static void check_jumps(int steps, int seed)
+{
+    const int settings_count = sizeof settings_of / sizeof *settings_of, paths = 1 + (steps - 1) / (PATH * BODIES * settings_count);
+    const double least = single ? 1e-3 : 0; /* depth, far above the tolerance of a query */
+    long steps_of[4] = {0}, jumps_of[4] = {0};
+    uniform_seed((uint64_t)seed);
+    printf("%-10s %-18s %7s %21s %21s %21s %15s %15s %15s\n", "", "", "steps", "cold: > 2, 10, worst mm", "warm", "swapped", "warm differs", "swapped differs", "rms, worst mm");
+    for (int k = 0; k < BODIES; k++)
+        for (int m = 0; m < settings_count; m++) {
+            way_t seen[WAYS] = {{0}};
+            errors_t error = {0, 0, 0, 0};
+            for (int path = 0, trial = 0; path < paths && trial < 50 * paths; trial++) {
+                ccd_real_t verts[2][6 * CORNERS];
+                const int on_floor = settings_of[m].floor < 0 ? random_below(2) : settings_of[m].floor;
+                const double depth = exp(uniform(log(fmax(settings_of[m].depth[0], least)), log(fmax(settings_of[m].depth[1], 3 * least))));
+                double world[9], flip[9], n[3];
+                ccd_penetration_t p;
+                shape_t a = on_floor ? shape_box(1, 1, 0.5) : make_body(random_below(BODIES), random_below(2), verts[0]);
+                shape_t b = make_body(k, random_below(2), verts[1]);
+                lay(&a, 1, 0);
+                if (!on_floor)
+                    lay(&a, settings_of[m].stand, 0);
+                lay(&b, settings_of[m].stand, uniform(0, 1.2) * depth / (2 * HALF));
+                rotation_about(1, 0, 0, pi, flip);
+                shape_turn_by(&a, flip, 0, 0, 0);
+                const double x = uniform(-HALF, HALF), y = uniform(-HALF, HALF);
+                const ccd_vec3_t high = {{0, 0, 1}};
+                ccd_vec3_t top;
+                shape_support(&a, &high, &top);
+                shape_move(&b, x, y, (double)top.v[2] - (double)lowest(&b).v[2] - 2 * depth - 1e-3);
+                rotation_quaternion(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), uniform(-1, 1), world);
+                shape_turn_by(&a, world, 0, 0, 0);
+                shape_turn_by(&b, world, 0, 0, 0);
+                if (!overlap(&a, &b, NULL, 1e-7, 0, &p) || (double)p.depth < depth)
+                    continue;
+                copy(&p.dir, n);
+                shape_shift(&b, (double)p.depth - depth, n);
+                check_path(&a, b, depth, seen, &error);
+                path++;
+            }
+            printf("%-10s %-18s %7ld", body_name[k], settings_of[m].name, seen[COLD].steps);
+            for (int way = 0; way < WAYS; way++)
+                printf(" %6ld %6ld %7.2f", seen[way].jumps, seen[way].wide, 1e3 * seen[way].worst);
+            for (int way = WARM; way < WAYS; way++)
+                printf(" %6.2f%% %7.2f", 100.0 * (double)seen[way].apart / (double)seen[way].poses, 1e3 * seen[way].differs);
+            printf(" %7.3f %7.3f\n", 1e3 * sqrt(error.square / error.poses), 1e3 * error.worst);
+            for (int way = 0; way < WAYS && k != BODY_CONE; way++) {
+                steps_of[m] += seen[way].steps;
+                jumps_of[m] += seen[way].jumps;
+            }
+        }
+    for (int m = 0; m < settings_count; m++) {
+        printf("%-18s %8ld steps %6ld jumps, without cones\n", settings_of[m].name, steps_of[m], jumps_of[m]);
+        CHECK(jumps_of[m] <= 2 + fmax(settings_of[m].most, single ? 4 : 0) * 1e-3 * (double)steps_of[m], "%s: jumps", settings_of[m].name);
+    }
 }
 
 /* --- near both objects ------------------------------------------------------------------------ */
@@ -157,7 +387,7 @@ static void check_near(int every)
 
 /* --- faces by formula ------------------------------------------------------------------------- */
 
-enum { CORNERS = 10, PRISM_STEPS = 300000, PATH = 20 };
+enum { PRISM_STEPS = 300000 };
 
 /* Computes the centroid of the local depth over the lower face of k corners: linear, and cut off where it is negative.
  * `normal`: the floor's. */
@@ -432,8 +662,6 @@ static void set_poses(const sweep_t *s, double depth)
     }
 }
 
-typedef struct { double square, worst, step; int poses; } errors_t;
-
 static errors_t sweep(const sweep_t *s, double depth, int call, const double world[9])
 {
     double last[3] = {0, 0, 0}, last_truth[3] = {0, 0, 0};
@@ -598,6 +826,8 @@ static void check_pressure(int every)
 
 int main(int argc, char **argv)
 {
+    if (argc > 3 && strcmp(argv[1], "jumps") == 0)
+        check_jumps(atoi(argv[2]), atoi(argv[3]));
     static const struct { const char *name; void (*check)(int every); } parts[] = {
         {"near", check_near}, {"faces", check_faces}, {"pressure", check_pressure}};
     for (int i = 0; i < 3; i++)

@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Computes the center of pressure of two overlapping shapes, the exact `pos`: the centroid of their common
- * volume, by integration. For every shape but the polytope. */
+ * volume, by integration. */
 
 #ifndef TESTS_PRESSURE_H
 #define TESTS_PRESSURE_H
@@ -63,8 +63,49 @@ static inline span_t span_quadric(const double p[3], const double d[3], const do
     return s;
 }
 
-/* Returns the part of the line p + t d in the shape. */
-static inline span_t pressure_span(const shape_t *s, const double p[3], const double d[3])
+/* The half spaces n.x <= h of a polytope, in its frame. */
+enum { MAX_FACES = 64 };
+typedef struct {
+    int count;
+    double n[MAX_FACES][3], h[MAX_FACES];
+} faces_t;
+
+/* Finds the faces: planes through three vertices with no vertex above them. */
+static inline void polytope_faces(const shape_t *s, faces_t *f)
+{
+    const int n = s->nverts;
+    f->count = 0;
+    for (int code = 0; code < n * n * n; code++) {
+        const int corner[3] = {code % n, code / n % n, code / n / n};
+        double v[3][3], normal[3], highest = -INFINITY;
+        int same = 0;
+        if (corner[0] >= corner[1] || corner[0] >= corner[2] || corner[1] == corner[2])
+            continue;
+        for (int k = 0; k < 3; k++) {
+            v[0][k] = (double)s->verts[3 * corner[0] + k];
+            v[1][k] = (double)s->verts[3 * corner[1] + k] - v[0][k];
+            v[2][k] = (double)s->verts[3 * corner[2] + k] - v[0][k];
+        }
+        truth_cross3(v[1], v[2], normal);
+        const double length = sqrt(truth_dot3(normal, normal));
+        for (int k = 0; k < 3; k++)
+            normal[k] /= length;
+        const double height = truth_dot3(normal, v[0]);
+        for (int i = 0; i < n; i++) {
+            const double at[3] = {(double)s->verts[3 * i], (double)s->verts[3 * i + 1], (double)s->verts[3 * i + 2]};
+            highest = fmax(highest, truth_dot3(normal, at) - height);
+        }
+        for (int i = 0; i < f->count; i++)
+            same |= truth_dot3(normal, f->n[i]) > 1 - 1e-12;
+        if (length > 0 && highest < 1e-9 && !same && f->count < MAX_FACES) {
+            memcpy(f->n[f->count], normal, sizeof normal);
+            f->h[f->count++] = height;
+        }
+    }
+}
+
+/* Returns the part of the line p + t d in the shape; `faces`: of a polytope. */
+static inline span_t pressure_span(const shape_t *s, const faces_t *faces, const double p[3], const double d[3])
 {
     static const double ball[3] = {1, 1, 1}, cylinder[3] = {1, 1, 0};
     const double p0 = (double)s->p[0], p1 = (double)s->p[1], r2 = p0 * p0;
@@ -99,6 +140,19 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
     }
     case SHAPE_CONE: return span_intersection(span_quadric(q, e, cone, p1, 0), slab);
     case SHAPE_ELLIPSOID: return span_quadric(q, e, w, 0, 1);
+    case SHAPE_POLYTOPE: {
+        span_t all = {-INFINITY, INFINITY};
+        for (int i = 0; i < faces->count; i++) {
+            const double below = faces->h[i] - truth_dot3(faces->n[i], q), slope = truth_dot3(faces->n[i], e);
+            if (slope > 0)
+                all.to = fmin(all.to, below / slope);
+            else if (slope < 0)
+                all.from = fmax(all.from, below / slope);
+            else if (below < 0)
+                return none;
+        }
+        return all;
+    }
     default: break;
     }
     return none;
@@ -107,6 +161,7 @@ static inline span_t pressure_span(const shape_t *s, const double p[3], const do
 /* Integral over the plane of u and v through `origin`, of the chords along n in both shapes. */
 typedef struct {
     const shape_t *a, *b;
+    faces_t faces[2];
     double origin[3], u[3], v[3], n[3];
     double volume, moment[3];
     double radius; /* the largest distance of the region's edge from `origin` */
@@ -118,7 +173,7 @@ static inline span_t pressure_chord(const pressure_t *c, double x, double y)
     double p[3];
     for (int i = 0; i < 3; i++)
         p[i] = c->origin[i] + x * c->u[i] + y * c->v[i];
-    return span_intersection(pressure_span(c->a, p, c->n), pressure_span(c->b, p, c->n));
+    return span_intersection(pressure_span(c->a, &c->faces[0], p, c->n), pressure_span(c->b, &c->faces[1], p, c->n));
 }
 
 /* Finds the edge of the region in the direction `angle` by bisection: the length of a chord is concave. */
@@ -187,6 +242,10 @@ static inline double center_of_pressure(const shape_t *a, const shape_t *b, cons
     memset(&c, 0, sizeof c);
     c.a = a;
     c.b = b;
+    if (a->type == SHAPE_POLYTOPE)
+        polytope_faces(a, &c.faces[0]);
+    if (b->type == SHAPE_POLYTOPE)
+        polytope_faces(b, &c.faces[1]);
     memcpy(c.n, n, sizeof c.n);
     memcpy(c.origin, place, sizeof c.origin);
     for (int i = 0; i < 3; i++)
