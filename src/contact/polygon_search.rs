@@ -7,11 +7,14 @@
 //! along which both of its ends have the same height, until no side has a corner beyond it; so the polygon is the same
 //! whatever was known. If four corners are a parallelogram and its longest side has no corner beyond it, neither has any
 //! other. A corner and an edge are known if evaluated directions around them returned them.
+//!
+//! A known vertex below the overlap may not be that of greatest height (on the rim of a cone on its side it is far from it):
+//! a query replaces it as the end of an edge, before the sides of that edge are searched.
 
 use crate::contact::fan::{Fan, moved};
 use crate::contact::feature::{FeatureQuery, KnownPair, four_directions, is_within};
 use crate::contact::frame::outwards;
-use crate::contact::tuning::{DROP_TOL, MIN_COVER, POINT_REL};
+use crate::contact::tuning::{DROP_TOL, MIN_COVER, POINT_REL, TILT_FACTOR};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
@@ -20,6 +23,10 @@ use crate::minkowski::support::{Fault, SupportMap};
 pub const MAX_CORNERS: usize = 10;
 /// Largest number of steps of its search: each corner is found once and each side closed once.
 const MAX_STEPS: usize = 2 * MAX_CORNERS + 4;
+/// Least drop of both ends of a side beyond which no corner is in the overlap: between two directions tilted by T a surface
+/// whose radius is the extent rises by TILT_FACTOR² / 2 depths at most.
+const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
+
 impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     /// Finds the polygon of a polytope and makes its fan. Returns false if `may_fail` and the first two queries return
     /// new vertices: two directions in a plane with a disc's axis return the same rim point, so a vertex returned twice
@@ -56,8 +63,8 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             let [p, q] = ends.map(|end| self.height(end, &out));
             let least = larger(p, q) + 2.0 * self.vertex_offset;
             let mut found = None;
-            let is_side = n > 2 || n == 2 && step < 2;
-            let is_covered = may_fail && n < 3 && self.is_covered(object, out, ends, is_side);
+            let is_side = n > 2 || n == 2 && step >= 2;
+            let is_covered = may_fail && n < 3 && self.is_covered(object, out, ends);
             if !is_covered {
                 let v = self.query(object, out)?;
                 if self.height(&v, &out) > least {
@@ -85,7 +92,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
                 }
                 // Beyond an end of an edge.
                 Some(v) if !is_side && n == 2 => {
-                    polygon.corners[usize::from(step == 3)] = v;
+                    polygon.corners[usize::from(step == 1)] = v;
                     polygon.open(0);
                     polygon.open(1);
                     step = 0;
@@ -101,7 +108,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
     }
 
     /// Returns the side of a polygon beyond which a corner is to be searched next, and the direction; None if the polygon
-    /// is complete. Around a corner, directions are the axes; around an edge those to both sides and beyond both ends.
+    /// is complete. Around a corner, directions are the axes; around an edge those beyond both ends and then to both sides.
     #[inline(always)]
     fn next_direction(
         &self,
@@ -115,12 +122,12 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         };
         match (polygon.len, step) {
             (1, 0..4) => Some((0, four_directions(Vec2::x())[step])),
-            (2, 0..2) => out_of(step),
-            (2, 2..4) => {
-                let [p, q] = polygon.side(step - 2);
+            (2, 0..2) => {
+                let [p, q] = polygon.side(step);
                 let along = offset(p, q);
                 Some((0, along * (1.0 / along.norm())))
             }
+            (2, 2..4) => out_of(step - 2),
             (0..3 | MAX_CORNERS, _) => None,
             _ => {
                 let side = polygon.longest_open_side(least_side * least_side)?;
@@ -129,16 +136,16 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         }
     }
 
-    /// Returns whether an evaluated direction tilted towards `out` (`is_side`: within 27° of it) returned one of two vertices.
-    /// (The directions that return a vertex form a convex set, which mostly contains the normal.)
+    /// Returns whether an evaluated direction tilted towards `out`, within 27° of it, returned one of two vertices, in the
+    /// overlap. (The directions that return a vertex form a convex set, which mostly contains the normal.)
     #[inline(always)]
-    fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2], is_side: bool) -> bool {
+    fn is_covered(&self, object: usize, out: Vec2, ends: [&Vec3; 2]) -> bool {
         let same = self.vertex_offset;
-        let share = if is_side { 2.0 } else { 0.0 };
+        let is_end = |v: &Vec3| v.z <= 1.0 && ends.iter().any(|end| is_within(v, end, same));
         let is_cover = |pair: &KnownPair| {
-            let (v, tilt) = (pair.vertex(object), Vec2::from(pair.tilt));
-            let towards = tilt.dot(&out) - share * tilt.perp(&out).abs();
-            towards >= MIN_COVER * self.tilt && ends.iter().any(|end| is_within(&v, end, same))
+            let tilt = Vec2::from(pair.tilt);
+            let towards = tilt.dot(&out) - 2.0 * tilt.perp(&out).abs();
+            towards >= MIN_COVER * self.tilt && is_end(&pair.vertex(object))
         };
         self.known.iter().any(is_cover)
     }
@@ -179,9 +186,8 @@ impl Polygon {
     #[inline(always)]
     fn open(&mut self, i: usize) {
         let [p, q] = self.side(i);
-        // A side below the overlap does not matter.
-        let in_overlap = f64::from(u8::from(lesser(p.z, q.z) < 1.0));
-        let length2 = offset(p, q).norm_squared() * in_overlap;
+        let may_matter = f64::from(u8::from(lesser(p.z, q.z) < MAX_SIDE_DROP));
+        let length2 = offset(p, q).norm_squared() * may_matter;
         self.open_length2[i % MAX_CORNERS] = length2;
     }
 
