@@ -15,13 +15,6 @@ void bench_center(const void *obj, ccd_vec3_t *out) { shape_center(obj, out); }
 
 unsigned long bench_calls(const shape_t *s) { return s->calls; }
 
-/* Returns the position of a shape, and its rotation, row by row. */
-void bench_pose(const shape_t *s, double pos[3], double rot[9])
-{
-    memcpy(pos, s->pos, sizeof s->pos);
-    memcpy(rot, s->rot, sizeof s->rot);
-}
-
 /* Calls f. callgrind counts what runs inside, and begins new counts after bench_end. */
 __attribute__((noinline)) void bench_counted(void (*f)(void *), void *data)
 {

@@ -14,7 +14,6 @@ use std::process::Command;
 
 use ccd::internals::ffi::{CCD_WARM_REALS, ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t, ccd_warm_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
-use nalgebra::{Matrix3, Vector3};
 
 use super::scene::Pair;
 use crate::harness;
@@ -31,7 +30,6 @@ pub struct Callbacks {
     support: ccd_support_fn,
     center: ccd_center_fn,
     pub calls: unsafe extern "C-unwind" fn(*const c_void) -> c_ulong,
-    pose: unsafe extern "C-unwind" fn(*const c_void, *mut f64, *mut f64),
     pub scene: unsafe extern "C-unwind" fn(*const c_char, *mut *mut Pair) -> usize,
     pub random: unsafe extern "C-unwind" fn(c_int, c_int, usize, *mut *mut Pair) -> usize,
     pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
@@ -114,7 +112,6 @@ impl Libraries {
                 support: function(object, "bench_support"),
                 center: function(object, "bench_center"),
                 calls: function(object, "bench_calls"),
-                pose: function(object, "bench_pose"),
                 scene: function(object, "bench_scene"),
                 random: function(object, "bench_random"),
                 counted: function(object, "bench_counted"),
@@ -155,14 +152,6 @@ impl Libraries {
         let object = self.work.path().join(format!("{part}.so"));
         compile(true, flags, "lab/charts/peers.cpp", &object, linked)?;
         open(&object).map_err(|e| e.to_string())
-    }
-
-    /// Returns rotation (local to world) and position of a shape.
-    pub fn pose(&self, shape: *mut c_void) -> (Matrix3<f64>, Vector3<f64>) {
-        let (mut position, mut rotation) = ([0.0; 3], [0.0; 9]);
-        // SAFETY: a shape and room for its numbers.
-        unsafe { (self.callbacks.pose)(shape, position.as_mut_ptr(), rotation.as_mut_ptr()) };
-        (Matrix3::from_row_slice(&rotation), position.into())
     }
 }
 

@@ -24,8 +24,6 @@ pub struct Row {
     pub start: Start,
     pub tolerance: Option<f64>,
     pub ours: bool,
-    /// The variable of a chart: vertices, degrees a frame.
-    pub x: Option<f64>,
     pub queries: usize,
     /// Of these, overlaps deeper than 1 nm: the ones that are judged.
     pub overlaps: usize,

@@ -66,7 +66,7 @@ const fn entry(name: &'static str, interface: Interface) -> Entry {
 }
 
 /// Every method.
-const METHODS: [Entry; 22] = [
+const METHODS: [Entry; 20] = [
     entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }),
     entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }),
     entry("libccd ccdMPRIntersect", Interface::YesNo),
@@ -81,8 +81,6 @@ const METHODS: [Entry; 22] = [
     entry("ccdPenetrationProven", Interface::Full),
     entry("Gao 2023, Algorithm 4/5", Interface::Gao(Until::Shortcut)),
     entry("Gao 2023, Algorithm 3", Interface::Gao(Until::Normal)),
-    entry("ccdPenetrationLocal, climbing", Interface::Peer),
-    entry("DEEP", Interface::Peer),
     entry("Bullet EPA", Interface::Peer),
     entry("FCL EPA", Interface::Peer),
     entry("parry EPA", Interface::PeerInside),

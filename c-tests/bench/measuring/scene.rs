@@ -6,7 +6,7 @@
 
 use std::ffi::{CString, c_void};
 use std::os::unix::ffi::OsStrExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::ptr::null_mut;
 
 use super::libraries::Libraries;
@@ -49,14 +49,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the file of a pair set.
-    pub fn file(name: &str) -> PathBuf {
-        harness::root().join(format!("c-tests/bench/pairs/{name}.bin"))
-    }
-
     /// Reads at most `limit` poses of a pair set.
     pub fn load(libraries: &Libraries, name: &str, limit: usize) -> Self {
-        let mut scene = Self::read(libraries, name, &Self::file(name));
+        let file = harness::root().join(format!("c-tests/bench/pairs/{name}.bin"));
+        let mut scene = Self::read(libraries, name, &file);
         scene.pairs.truncate(limit);
         scene
     }

@@ -3,21 +3,27 @@
 
 //! Speed against accuracy: every method at every tolerance on every kind of pair.
 
+use std::path::Path;
+
 use super::figure::{self, Axis, Panel, SUPPORTS, TIME};
-use super::{Bench, Page};
+use super::peers::Peers;
+use super::times;
+use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
 use crate::measuring::recorded::{MOTIONS, RANDOM};
 use crate::measuring::scene::Scene;
 
-pub fn measure(bench: &Bench) -> Vec<Row> {
+pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row> {
+    let (num_poses, repetitions, step) = if is_quick { (100, 3, 2) } else { (usize::MAX, 9, 1) };
     let rows = |set: &&str| {
-        let scene = Scene::load(bench.libraries, set, bench.poses());
+        eprintln!("speed against accuracy: {set}");
+        let scene = Scene::load(libraries, set, num_poses);
         let is_motion = scene.is_motion();
         let (local, proven) = if is_motion { (Start::Warm, Start::Warm) } else { (Start::Guess5, Start::None) };
         let mut list = Vec::new();
         // Metres; libccd's EPA compares squares with it.
-        for t in (2..=12).step_by(if bench.quick { 2 } else { 1 }).map(|k| 10_f64.powi(-k)) {
+        for t in (2..=12).step_by(step).map(|k| 10_f64.powi(-k)) {
             list.extend([
                 ("libccd ccdMPRPenetration", Start::None, t),
                 ("libccd ccdGJKPenetration", Start::None, t),
@@ -28,56 +34,37 @@ pub fn measure(bench: &Bench) -> Vec<Row> {
                 ("ccdPenetrationProven", proven, t),
             ]);
         }
-        let mut methods = select(bench.libraries, &list);
-        methods.extend(bench.peers.methods(bench.libraries));
-        bench.timed().rows(&scene, methods)
+        let mut methods = select(libraries, &list);
+        methods.extend(peers.methods(libraries));
+        times::runner(libraries, repetitions).rows(&scene, methods)
     };
-    super::progress(&[&RANDOM[..], &MOTIONS].concat(), "speed against accuracy").flat_map(rows).collect()
+    [&RANDOM[..], &MOTIONS].concat().iter().flat_map(rows).collect()
 }
 
 /// The last digit of a metre is the finest error.
 const ERROR: Axis = ("mean |depth error|, m", |row| Some(row.mean_error.max(1e-16)));
 
-/// The four kinds of pairs, and the methods, of the front page's picture.
-const FRONT: [&str; 4] = ["box_box", "p642_p642", "cyl_box", "cap_cap"];
-const ON_THE_FRONT: [&str; 6] = [
-    "libccd ccdMPRPenetration",
-    "libccd ccdGJKPenetration",
-    "Gao 2023, Algorithm 4/5",
-    "ccdMPRPenetration",
-    "ccdPenetrationLocal",
-    "ccdPenetrationProven",
-];
-
-/// Draws a panel for each set and a curve for each method: its cost against its error.
-fn picture<'a>(
-    page: &Page,
-    file: &str,
-    title: &str,
-    rows: impl Iterator<Item = &'a Row> + Clone,
-    sets: &[&str],
-    cost: Axis,
-) {
-    let panel = |set: &&str| {
-        let rows: Vec<&Row> = rows.clone().filter(|r| r.set == *set).collect();
-        let limit = rows.first().map(|r| r.truth_gap);
-        Panel { title: super::kind(set), x: ERROR, y: cost, rows, limit }
-    };
-    let columns = if sets.len() == 4 { 2 } else { 3 };
-    let notes = ["left of the dashes the truth is not known".to_owned(), page.footer()];
-    figure::grid(&page.out.join(file), title, columns, sets.iter().map(panel).collect(), &notes).expect("a picture");
-}
-
-pub fn draw(page: &Page, rows: &[Row]) {
-    let on_the_front = rows.iter().filter(|r| ON_THE_FRONT.contains(&&*r.method));
-    let title = "Time of a query over its error: left is more exact, down is faster";
-    picture(page, "front.svg", title, on_the_front, &FRONT, TIME);
+/// Draws time and support points over the error: a panel for each set and a curve for each method.
+pub fn draw(out: &Path, machine: &str, rows: &[Row]) {
+    let (place, rest) = machine.split_once("; ").unwrap_or((machine, ""));
+    let version = rest.split(" (").next().unwrap_or("");
+    let notes = [
+        "left of the dashes the truth is not known".to_owned(),
+        format!("thick: this library; {place}; {version}; all in one process, rustc and gcc -O3"),
+    ];
     for (sets, file, what) in [
         (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
         (&MOTIONS, "frames", "motions of 0.1° and 0.1 mm a frame, warm"),
     ] {
-        let title = |cost| format!("{cost} against error: {what}");
-        picture(page, &format!("{file}_time.svg"), &title("Time"), rows.iter(), sets, TIME);
-        picture(page, &format!("{file}_supports.svg"), &title("Support points"), rows.iter(), sets, SUPPORTS);
+        for (cost, name, y) in [("Time", "time", TIME), ("Support points", "supports", SUPPORTS)] {
+            let panel = |set: &&str| {
+                let rows: Vec<&Row> = rows.iter().filter(|row| row.set == *set).collect();
+                let limit = rows.first().map(|row| row.truth_gap);
+                Panel { title: super::kind(set), x: ERROR, y, rows, limit }
+            };
+            let path = out.join(format!("{file}_{name}.svg"));
+            let title = format!("{cost} against error: {what}");
+            figure::grid(&path, &title, sets.iter().map(panel).collect(), &notes).expect("a picture");
+        }
     }
 }

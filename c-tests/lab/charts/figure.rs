@@ -8,7 +8,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::measuring::measure::Row;
-use crate::measuring::methods::{Entry, Start};
+use crate::measuring::methods::Entry;
 
 /// Title of an axis, and the value of a row; none where it was not measured.
 pub type Axis = (&'static str, fn(&Row) -> Option<f64>);
@@ -27,12 +27,11 @@ pub struct Panel<'a> {
 
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-/// Returns the line of a row's curve: a hue for each method, thick for this library's, pale from a guess far off.
+/// Returns the line of a row's curve: a hue for each method, thick for this library's.
 fn line(row: &Row) -> ShapeStyle {
     let number = Entry::number(&row.method);
     let (hue, lightness) = ((number as f64 * 0.174).fract(), [0.3, 0.45][number % 2]);
-    let strength = if row.start == Start::Guess45 { 0.4 } else { 1.0 };
-    HSLColor(hue, 0.8, lightness).mix(strength).stroke_width(if row.ours { 3 } else { 1 })
+    HSLColor(hue, 0.8, lightness).stroke_width(if row.ours { 3 } else { 1 })
 }
 
 /// Draws the curves of a panel.
@@ -61,18 +60,21 @@ fn draw(panel: &Panel, legend: &[&Row], area: &DrawingArea<SVGBackend, plotters:
     Ok(())
 }
 
-/// Draws panels in rows of `columns`, then the legend and the notes.
-pub fn grid(path: &Path, title: &str, columns: usize, mut panels: Vec<Panel>, notes: &[String]) -> Drawn {
+/// Panels beside each other.
+const COLUMNS: usize = 3;
+
+/// Draws the panels, then the legend and the notes.
+pub fn grid(path: &Path, title: &str, mut panels: Vec<Panel>, notes: &[String]) -> Drawn {
     panels.retain(|panel| !panel.rows.is_empty());
     let mut legend: Vec<&Row> = panels.iter().flat_map(|panel| panel.rows.iter().copied()).collect();
     legend.sort_by_key(|row| row.label());
     legend.dedup_by_key(|row| row.label());
-    let rows = panels.len().div_ceil(columns);
+    let rows = panels.len().div_ceil(COLUMNS);
     let (top, below) = (290 * rows as u32, 20 * legend.len().div_ceil(2));
     let root = SVGBackend::new(path, (900, 50 + top + (below + 20 * notes.len()) as u32)).into_drawing_area();
     root.fill(&WHITE)?;
     let (head, foot) = root.titled(title, ("sans-serif", 20))?.split_vertically(top);
-    head.split_evenly((rows, columns)).iter().zip(&panels).try_for_each(|(cell, panel)| draw(panel, &legend, cell))?;
+    head.split_evenly((rows, COLUMNS)).iter().zip(&panels).try_for_each(|(cell, panel)| draw(panel, &legend, cell))?;
     let cells = (0..).map(|k| (16 + 440 * (k % 2), 8 + 20 * (k / 2)));
     for (row, (x, y)) in legend.iter().zip(cells) {
         foot.draw(&PathElement::new([(x, y), (x + 28, y)], line(row)))?;

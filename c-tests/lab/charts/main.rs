@@ -12,6 +12,8 @@ mod measuring;
 #[path = "../pages.rs"]
 mod pages;
 
+use std::path::Path;
+
 use measuring::ledger::{self, Cost};
 use measuring::libraries::Libraries;
 use measuring::recorded::{self, Recorded};
@@ -19,27 +21,21 @@ use measuring::{callgrind, csv};
 
 const USAGE: &str = "\
 usage: cargo bench -p lab -- COMMAND
-  charts [--quick] [--out DIR] [FIGURE...]  measure all figures or these (accuracy, vertices, coherence), as CSV and SVG
-  redraw [--out DIR]                        the pictures and their page from the CSV files that are there
-  record                                    the support counts, errors, instructions and mispredictions that a test judges
-  engines                                   this library beside other engines on recorded contacts; downloads what it can";
+  charts [--quick]  speed against accuracy, as CSV and SVG, and the page
+  redraw            the pictures and their page from the CSV files that are there
+  record            the support counts, errors, instructions and mispredictions that a test judges
+  engines           this library beside other engines on recorded contacts; downloads what it can";
 
 fn main() {
-    let mut words: Vec<String> = std::env::args().skip(1).collect();
-    let mut take = |option: &str, count: usize| {
-        let at = words.iter().position(|word| word == option)?;
-        words.drain(at..(at + count).min(words.len())).next_back()
-    };
-    take("--bench", 1); // from cargo
-    let quick = take("--quick", 1).is_some();
-    let out = take("--out", 2).unwrap_or(charts::OUT.to_owned()).into();
-    let command = words.first().cloned().unwrap_or_default();
-    let options = charts::Options { quick, out, only: words.into_iter().skip(1).collect() };
-    match &*command {
-        "record" => record(),
-        "charts" => charts::run(&options),
-        "redraw" => charts::redraw(&options),
-        "engines" => charts::engines::run(),
+    // cargo adds --bench.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let out = Path::new(charts::OUT);
+    match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["record"] => record(),
+        ["charts"] => charts::run(out, false),
+        ["charts", "--quick"] => charts::run(out, true),
+        ["redraw"] => charts::redraw(out),
+        ["engines"] => charts::engines::run(),
         _ => {
             eprintln!("{USAGE}");
             std::process::exit(2);
