@@ -8,7 +8,6 @@
 //! |---|---|---|
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another | pairs a row, row, first pair, seed: 1000 -1 0 1 |
-//! | `worst` | callbacks and microseconds of a query at worst | queries, seed: 1000000 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
 //! | `positions` | how far `pos` is from the objects (`tests/extension/pos.c`) | the share of two million hits: 1 |
 //! | `jumps` | how often `pos` jumps, by shape (`tests/extension/pos.c`) | steps, seed: 300000 1 |
@@ -39,10 +38,6 @@ fn elsewhere(path: &str) -> Executable {
     Program::new(format!("tests/{path}.c")).flag("-DOURS_ALONE").build()
 }
 
-fn worst_case() -> Executable {
-    programs::beside_libccd(Program::new("lab/worst_case.c")).build()
-}
-
 /// Runs the check of the truth on the recorded contacts and on every pair set.
 #[cfg(not(feature = "single"))]
 fn truth(given: &[String]) {
@@ -67,7 +62,6 @@ fn main() {
         "rates" => show(&program("judged").build(), &list("categories"), &["", "2000"]),
         "wide" => show(&program("judged").build(), &list("hard"), &["", "1000", "-1", "0", "1"]),
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
-        "worst" => show(&worst_case(), &given, &["1000000", "1"]),
         "positions" => show(&elsewhere("extension/pos"), &list("near"), &["", "1"]),
         "jumps" => show(&elsewhere("extension/pos"), &list("jumps"), &["", "300000", "1"]),
         "planar" => show(&elsewhere("extension/planar"), &given, &["20000"]),
@@ -79,7 +73,7 @@ fn main() {
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
             eprintln!(
-                "usage: campaigns rates|wide|worst|states|planar|touches|positions|jumps|truth|ledger|determinism [ARGUMENT...]"
+                "usage: campaigns rates|wide|states|planar|touches|positions|jumps|truth|ledger|determinism [ARGUMENT...]"
             );
             std::process::exit(2);
         }

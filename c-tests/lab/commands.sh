@@ -191,7 +191,6 @@ cargo run --release -p lab --bin engines -- long
 cargo run --release -p lab --bin engines -- world
 cargo run --release -p lab --bin campaigns -- rates
 cargo run --release -p lab --bin campaigns -- wide
-cargo run --release -p lab --bin campaigns -- worst
 cargo vendor
 source.sh OUT
 sh cmake/packages/source.sh OUT

@@ -65,7 +65,6 @@ step states campaign states
 step touches campaign touches
 step positions campaign positions
 step jumps campaign jumps
-step worst campaign worst
 step truth campaign truth
 step bookworm packages tests bookworm
 step trixie packages tests trixie

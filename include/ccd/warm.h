@@ -30,7 +30,7 @@
  * for p in D. A call reads only the tolerance that it names. max_iterations limits the support
  * points after the first tetrahedron or portal (in ccdPenetrationPlanar the portal steps). The
  * library's own limits are 160, 320 for ...Proven, ...Along and ...Planar, 380 for distances; no
- * query was seen to take more than 400 support points. Object pointers are passed to the callbacks
+ * query takes more than 500 support points in the tests. Object pointers are passed to the callbacks
  * and never dereferenced. Queries are re-entrant and keep no data except the caller's state.
  *
  * All statements assume convex objects and support functions that return a farthest point. If points

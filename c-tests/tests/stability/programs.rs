@@ -12,14 +12,9 @@ pub fn source(name: &str) -> Program {
 
 /// Returns a program with this library, and in double precision system libccd beside it.
 pub fn program(name: &str) -> Program {
-    beside_libccd(source(name))
-}
-
-/// Links a program of another folder so.
-pub fn beside_libccd(program: Program) -> Program {
     match Precision::CURRENT {
-        Precision::Double => program.link(Link::Renamed),
-        Precision::Single => program.flag("-DOURS_ALONE").link(Link::Static),
+        Precision::Double => source(name).link(Link::Renamed),
+        Precision::Single => source(name).flag("-DOURS_ALONE").link(Link::Static),
     }
 }
 
