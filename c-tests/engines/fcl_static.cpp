@@ -9,17 +9,12 @@
 #include "harness/identity.h"
 
 static body_t a, b;
-static std::unique_ptr<fcl::CollisionObjectd> object_a, object_b;
-
-static std::unique_ptr<fcl::CollisionObjectd> make_object(const body_t &body)
-{
-    return std::make_unique<fcl::CollisionObjectd>(fcl_geometry(body), fcl_pose(body.shape));
-}
+static std::unique_ptr<object> object_a, object_b;
 
 static void make()
 {
-    object_a = make_object(a);
-    object_b = make_object(b);
+    object_a.reset(new object(fcl_geometry(a.shape, TRIANGLE_MESH), fcl_pose(a.shape)));
+    object_b.reset(new object(fcl_geometry(b.shape, TRIANGLE_MESH), fcl_pose(b.shape)));
 }
 
 static long threw;

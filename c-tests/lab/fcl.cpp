@@ -15,7 +15,6 @@
 #include <vector>
 
 typedef ccd_real_t S;
-typedef fcl::CollisionObject<S> object;
 typedef fcl::CollisionResult<S> collision;
 typedef fcl::DistanceResult<S> proximity;
 
@@ -114,7 +113,7 @@ static void check_certified_depths(int poses)
         body_random(&a, kind1);
         body_random(&b, kind2);
         pose_overlapping(&a, &b, &truth);
-        const geometry ga = fcl_geometry(a, TRIANGLE_SHAPE), gb = fcl_geometry(b, TRIANGLE_SHAPE);
+        const geometry ga = fcl_geometry(a.shape, TRIANGLE_SHAPE), gb = fcl_geometry(b.shape, TRIANGLE_SHAPE);
         object oa(ga, fcl_pose(a.shape)), ob(gb, fcl_pose(b.shape));
         CHECK(ccd_fcl::is_supported(ga.get(), gb.get()), "%s %s", KIND_NAME[kind1], KIND_NAME[kind2]);
         for (double depth : depths) {
@@ -197,7 +196,7 @@ static std::vector<object> crowd(int n, double half_width)
         turn_at_random(&body.shape);
         for (S &x : body.shape.pos)
             x = S(uniform(-half_width, half_width));
-        objects.emplace_back(fcl_geometry(body, TRIANGLE_SHAPE), fcl_pose(body.shape));
+        objects.emplace_back(fcl_geometry(body.shape, TRIANGLE_SHAPE), fcl_pose(body.shape));
     }
     return objects;
 }
@@ -334,43 +333,18 @@ static void check_pairs_of_fcl(void)
 
 /* --- hulls, invalid input ------------------------------------------------ */
 
-/* Returns a globe of planar faces. */
-static geometry globe(int rings, int around)
-{
-    auto vertices = std::make_shared<std::vector<vec>>();
-    auto faces = std::make_shared<std::vector<int>>();
-    for (int i = 1; i < rings; i++)
-        for (int k = 0; k < around; k++) {
-            const double t = M_PI * i / rings, p = 2 * M_PI * k / around;
-            vertices->emplace_back(S(sin(t) * cos(p)), S(sin(t) * sin(p)), S(cos(t)));
-        }
-    for (int i = 0; i + 2 < rings; i++)
-        for (int k = 0; k < around; k++) {
-            const int next = (k + 1) % around, at = i * around;
-            for (int v : {4, at + k, at + around + k, at + around + next, at + next})
-                faces->push_back(v);
-        }
-    for (int cap = 0; cap < 2; cap++) {
-        faces->push_back(around);
-        for (int k = 0; k < around; k++)
-            faces->push_back(cap ? (rings - 2) * around + around - 1 - k : k);
-    }
-    return std::make_shared<fcl::Convex<S>>(vertices, (rings - 2) * around + 2, faces, true);
-}
-
 /* Checks hulls with more vertices than are scanned, and with fewer. */
 static void check_hulls(void)
 {
-    const geometry fine = globe(12, 16), coarse = globe(6, 8); /* 176 and 40 vertices */
+    const auto fine = fcl_globe(12, 16, vec(1, 1, 1)), coarse = fcl_globe(6, 8, vec(1, 1, 1)); /* 176 and 40 vertices */
     const object table = placed(std::make_shared<fcl::Box<S>>(4, 4, 1), vec(0, 0, S(-0.5)));
-    for (const geometry &g : {fine, coarse}) {
-        const auto &list = static_cast<const fcl::Convex<S> *>(g.get())->getVertices();
+    for (const auto &g : {fine, coarse}) {
         uniform_seed(3);
         for (int i = 0; i < 200; i++) {
             const vec about(S(uniform(-2, 2)), S(uniform(-2, 2)), S(uniform(-2, 2)));
             object body = placed(g, vec(0, 0, 0), about);
             S low = 0;
-            for (const vec &v : list)
+            for (const vec &v : g->getVertices())
                 low = std::min(low, (body.getRotation() * v)[2]);
             body.setTranslation(vec(0, 0, S(-0.01) - low));
             ccd_fcl::PairCache cache;

@@ -14,12 +14,12 @@ pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
     ("ODE, a pile", "ode_pile.c", "START 1500 32 pile", 1500.0),
     ("MuJoCo 2, a pile", "mujoco_pile.c", "START 1500 30 pile", 1500.0),
     ("DART over FCL, a pile", "dart_pile.cpp", "START 3000 15 fcl", 3000.0),
-    ("FCL, primitives that drift", "fcl_scene.cpp", "0 through primitives 300 200 0", 300.0),
+    ("FCL, primitives that drift", "fcl_scene.cpp", "0 through primitives 300 200", 300.0),
 ];
 
 /// Returns the screen that compare.sh prints about a program.
 pub fn screen(file: &str, arguments: &str) -> String {
-    let program = program(file).flag("-DTIMED").link(Link::System).build();
+    let program = program(file).link(Link::System).build();
     let written = must_succeed(program.compared(&[]).command().args(arguments.split(' ')), file);
     let name = file.split('.').next().unwrap_or_default();
     let path = program.path.to_string_lossy();
@@ -28,20 +28,13 @@ pub fn screen(file: &str, arguments: &str) -> String {
     screen[screen.find("== ").unwrap_or(0)..].trim().to_owned()
 }
 
-/// Returns the four narrow phases of `fcl_scene`, judged by their answers; or timed, without the judge.
-pub fn fcl_scene(is_timed: bool) -> [Method; 4] {
-    let program = || program("fcl_scene.cpp").flag(if is_timed { "-DTIMED" } else { "-DJUDGED" });
-    let [theirs, ours] = if is_timed {
-        on_both(program())
-    } else {
-        let theirs = program().link(Link::Renamed).build();
-        let ours = theirs.swapped();
-        [Method::libccd("", theirs), Method::ours("", ours)]
-    };
-    let header = program().flag("-DBY_HEADER").flag("-DOURS_ALONE").build();
+/// Returns the four narrow phases of `fcl_scene`.
+pub fn fcl_scene() -> [Method; 4] {
+    let [theirs, ours] = on_both(program("fcl_scene.cpp"));
+    let header = program("fcl_scene.cpp").flag("-DBY_HEADER").flag("-DOURS_ALONE").build();
     [
-        theirs.named("`fcl::collide` on libccd").first("0"),
-        ours.named("`fcl::collide` on this library").first("0"),
+        theirs.first("0"),
+        ours.first("0"),
         Method::ours("`ccd/fcl.hpp`, one contact a pair", header.clone()).first("1"),
         Method::ours("`ccd/fcl.hpp`, up to 8 contacts", header).first("8"),
     ]

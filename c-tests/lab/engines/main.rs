@@ -98,7 +98,7 @@ fn world() -> bool {
 
 /// Prints what FCL costs by use, and writes it into the page of the engines.
 fn fcl() {
-    let costs = tables::fcl_costs(9, 1);
+    let costs = tables::fcl_costs(9);
     let table = format!("\n{}\n\n{}.\n", tables::fcl_table(&costs), harness::machine());
     println!("{table}");
     write_between_marks("c-tests/engines/README.md", "fcl", &table);

@@ -26,8 +26,6 @@ fn fcl_signed_distance() {
             assert!(ours.value(&key) <= theirs.value(&key), "{key}\n{}", ours.text);
         }
     }
-    let [there, here] = [&theirs, &ours].map(|output| output.value("random.error_sum"));
-    assert!(here <= there + 1e-6, "{here} m off in all, {there} m on libccd");
 }
 
 /// A preloaded library takes the place of the shared libccd that python-fcl's wheel carries.
@@ -43,29 +41,22 @@ fn python_wheel_by_preloading() {
     }
 }
 
-/// This library misses nothing and keeps its bound on the depth behind FCL's narrow phase and behind
-/// `<ccd/fcl.hpp>`, in every use of the table.
+/// No answer of this library is wrong behind FCL's narrow phase, in every use of the table. (`<ccd/fcl.hpp>`: `fcl.cpp`.)
 #[test]
 fn fcl_uses_judged() {
-    for cost in tables::fcl_costs(0, 2) {
-        let [theirs, ours @ ..] = &cost.judged;
-        for key in ["judged.pairs", "judged.exact"] {
-            assert!(theirs.value(key) > 5.0, "{key}: {}", theirs.text);
-            assert!(ours.iter().all(|scene| scene.value(key) == theirs.value(key)), "{key}");
-        }
-        assert!(theirs.value("put.hits") > 50.0, "{}: {}", cost.row, theirs.text);
-        for scene in ours {
-            let failures = scene.nonzero("put.missed put.spurious put.broken put.off");
-            assert!(failures.is_empty(), "{}: {failures:?}", cost.row);
-        }
+    for cost in tables::fcl_costs(0) {
+        let [theirs, ours] = &cost.judged;
+        assert!(ours.value("counted.judged") > 500.0 && theirs.value("own.hits") > 50.0, "{}: {}", cost.row, ours.text);
+        let failures = ours.nonzero(tables::WRONG);
+        assert!(failures.is_empty(), "{}: {failures:?}", cost.row);
     }
 }
 
 /// `<ccd/fcl.hpp>` spends little outside the library and the callbacks.
 #[test]
 fn fcl_header_costs_little() {
-    let [_, _, header, _] = consumers::fcl_scene(true);
-    let command = header.command("through primitives 60 200 1");
+    let [_, _, header, _] = consumers::fcl_scene();
+    let command = header.command("through primitives 60 200");
     // Each toggle switches counting at entry and at exit.
     let instructions = |functions: &[&str]| {
         let toggles: Vec<_> = functions.iter().map(|name| format!("--toggle-collect={name}")).collect();
@@ -74,7 +65,7 @@ fn fcl_header_costs_little() {
         let totals = dumps.iter().flat_map(|dump| dump.lines()).filter_map(|line| line.strip_prefix("totals: "));
         totals.map(|n| n.parse::<f64>().expect("a count")).sum::<f64>()
     };
-    let collide = "collide(scene_t const&*";
+    let collide = "collide(scene_pair const&*";
     let all = instructions(&[collide]);
     let outside = instructions(&[collide, "ccdPenetration", "ccdIntersect", "ccdContacts", "ccdSignedDistance"]);
     assert!(all > 1e6 && outside > 0.0 && outside < 0.13 * all, "{outside} of {all} instructions");

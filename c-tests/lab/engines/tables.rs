@@ -7,7 +7,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 use super::consumers::{self, CONSUMERS};
-use super::programs::{Method, Output, on_both, program, run_all};
+use super::programs::{Method, Output, compared, on_both, program, run_all};
 use super::results::{Simulation, median, range, simulate, values};
 use crate::pages::markdown;
 
@@ -34,34 +34,37 @@ pub fn distance_table(outputs: &[Output]) -> String {
     markdown("pairs||pairs|threw|endless|wrong|µs a distance", rows.map(line))
 }
 
+/// The counters of wrong answers.
+pub const WRONG: &str = "own.missed own.spurious own.broken own.deep own.unsound";
+
 // --- FCL by use -----------------------------------------------------------------
 
-/// How FCL is used: its name in `fcl_scene`, what a reader calls it, frames and number of pairs or bodies.
-pub const FCL_USES: [(&str, &str, usize, usize); 5] = [
+/// How FCL is used: its name in `fcl_scene`, what a reader calls it, frames and number of pairs.
+const FCL_USES: [(&str, &str, usize, usize); 4] = [
     ("yes-no", "yes or no, random poses", 200, 120),
     ("touching", "contacts of touching bodies", 100, 120),
-    ("through", "contacts of bodies that drift through each other", 150, 100),
+    ("through", "contacts of bodies that drift through each other", 150, 120),
     ("random", "contacts in random poses", 100, 120),
-    ("mesh", "contacts of a mesh of 128 triangles", 10, 60),
 ];
 
 /// FCL's narrow phases in one use and with one kind of bodies.
 pub struct FclCost {
     pub row: String,
-    /// By their answers.
-    pub judged: [Output; 4],
+    /// FCL's own narrow phase on either library, by its answers.
+    pub judged: [Output; 2],
     /// Time over that on libccd: median of the rounds.
     ratios: [f64; 4],
 }
 
-/// Judges each use of FCL with primitives and with hulls, and times it in so many rounds, in which the narrow phases
-/// take turns. The frames are divided by `part`.
-pub fn fcl_costs(rounds: usize, part: usize) -> Vec<FclCost> {
-    let [judged, timed] = [false, true].map(consumers::fcl_scene);
+/// Judges each use of FCL with primitives and with hulls in a tenth of the frames, and times it in so many rounds, in which
+/// the narrow phases take turns.
+pub fn fcl_costs(rounds: usize) -> Vec<FclCost> {
+    let judged = compared(program("fcl_scene.cpp"), "1").map(|method| method.first("0"));
+    let timed = consumers::fcl_scene();
     let rows = FCL_USES.iter().flat_map(|row| ["primitives", "hulls"].map(|bodies| (row, bodies)));
     let cost = |((name, title, frames, count), bodies): (&(&str, &str, usize, usize), &str)| {
-        let judged = run_all(&judged, &format!("{name} {bodies} {} {count} 100", (frames / 10).div_ceil(part)));
-        let arguments = format!("{name} {bodies} {frames} {count} 1");
+        let judged = run_all(&judged, &format!("{name} {bodies} {} {count}", frames / 10));
+        let arguments = format!("{name} {bodies} {frames} {count}");
         let mut seconds = [const { Vec::new() }; 4];
         for _ in 0..rounds {
             for (method, seconds) in timed.iter().zip(&mut seconds) {
@@ -80,13 +83,12 @@ pub fn fcl_costs(rounds: usize, part: usize) -> Vec<FclCost> {
 
 /// Returns the share of wrong answers, in percent of the hits and misses of overlapping pairs.
 fn wrong_percent(output: &Output) -> f64 {
-    let wrong = output.sum("put.missed put.spurious put.broken put.deep put.unsound");
-    100.0 * wrong / output.sum("put.hits put.missed")
+    100.0 * output.sum(WRONG) / output.sum("own.hits own.missed")
 }
 
 pub fn fcl_table(costs: &[FclCost]) -> String {
     let line = |cost: &FclCost| {
-        let wrong = [0, 1].map(|method: usize| format!("{:.1} %", wrong_percent(&cost.judged[method])));
+        let wrong = cost.judged.each_ref().map(|output| format!("{:.1} %", wrong_percent(output)));
         let times = cost.ratios[1..].iter().map(|ratio| format!("{ratio:.2}"));
         [cost.row.clone()].into_iter().chain(wrong).chain(times).collect()
     };
@@ -111,7 +113,7 @@ fn least_of<const N: usize>(rounds: usize, methods: &[Method; N], arguments: &st
 /// starts, of each the least of so many rounds in which the libraries take turns.
 pub fn step_table(rounds: usize, starts: usize) -> String {
     let line = |(title, file, arguments, steps): (&str, &str, &str, f64)| {
-        let methods = on_both(program(file).flag("-DTIMED"));
+        let methods = on_both(program(file));
         let mut sums = [0.0; 2];
         for start in 1..=starts {
             let arguments = arguments.replace("START", &start.to_string());
