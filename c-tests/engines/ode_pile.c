@@ -10,19 +10,15 @@
  *   roll   cylinders roll to and fro on the floor
  *   tower  one tower of flat hulls, stacked exactly
  *
- * All but the last start moved by up to 1e-3 m a coordinate, towers and cylinders 1e-5 m.
- *
- * Compiled plain, ODE queries libccd. With CONTACTS, the most contacts of a pair, this library
- * collides the geometries: a class of dCreateGeomClass, with a state for each pair, and one contact at
- * `pos` or those of ccdContacts.
+ * All but the last start moved by up to 1e-3 m a coordinate, towers and cylinders 1e-5 m. Prints the deepest contact, the
+ * energy gained, and what must not be: whether a body left the pen, and the number of contacts that are none.
  *
  * usage: ode_pile SEED STEPS BODIES SCENE */
 
 #include "engines/ode_shapes.h"
-#include "engines/pile.h"
+#include "harness/identity.h"
 
-#include <ccd/warm.h>
-#include <string.h>
+#include <time.h>
 
 enum { SCENE_BODIES = 96 };
 
@@ -35,112 +31,13 @@ typedef struct {
     dGeomID geom[SCENE_BODIES];
     dBodyID body[SCENE_BODIES]; /* NULL for static ones */
     double half_width;          /* of the pen */
-    pile_t pile;
+    double deepest;             /* contact, metres */
+    double least, gained;       /* energy, and how far it rose above its least, joules */
+    int escaped;
+    long bad; /* contacts whose normal is not unit, or with a number that is not finite */
 } scene_t;
 
 static scene_t scene;
-
-#ifdef CONTACTS
-
-/* --- geometries that this library collides ------------------------------------------ */
-
-/* Returns the shape of a body at the pose of its geometry. */
-static shape_t shape_at(int i)
-{
-    const dReal *p = dGeomGetPosition(scene.geom[i]), *R = dGeomGetRotation(scene.geom[i]);
-    const double rot[9] = { R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10] };
-    shape_t shape = scene.shape[i].shape;
-    shape_move(&shape, p[0], p[1], p[2]);
-    shape_turn(&shape, rot);
-    return shape;
-}
-
-static int index_of(dGeomID geom) { return (int)(intptr_t)dGeomGetData(geom); }
-
-static ccd_warm_t warm[SCENE_BODIES][SCENE_BODIES];
-static ccd_manifold_cache_t cache[SCENE_BODIES][SCENE_BODIES];
-static unsigned long queries, supports, limits;
-
-/* Distance of a corner from its face that still is a contact: the layer that ODE lets contacts
- * sink into. */
-static const double SLOP = 1e-3;
-
-static void aabb(dGeomID geom, dReal box[6])
-{
-    const shape_t s = shape_at(index_of(geom));
-    for (int k = 0; k < 3; k++)
-        for (int side = 0; side < 2; side++) {
-            ccd_vec3_t dir = {{0, 0, 0}}, v;
-            dir.v[k] = side ? 1 : -1;
-            shape_support(&s, &dir, &v);
-            box[2 * k + side] = v.v[k];
-        }
-}
-
-/* The first body leaves along ODE's normal. */
-static int collide(dGeomID o1, dGeomID o2, int flags, dContactGeom *out, int skip)
-{
-    const int i = index_of(o1), j = index_of(o2), low = i < j ? i : j, high = i < j ? j : i;
-    const int room = flags & 0xffff, max = room < CONTACTS ? room : CONTACTS;
-    shape_t a = shape_at(i), b = shape_at(j);
-    ccd_contact_t contact[CONTACTS];
-    ccd_penetration_t hit;
-    int n = 1, written = 0;
-    ccd_t ccd = shape_query();
-    ccd.mpr_tolerance = 1e-6; /* as ODE's */
-    /* One state for both orders of the pair. */
-    if (i > j)
-        ccdWarmFlip(&warm[low][high]);
-    const int code = ccdPenetrationLocal(&a, &b, &ccd, &warm[low][high], max > 1 ? 0 : CCD_WANT_POS, &hit);
-    if (i > j)
-        ccdWarmFlip(&warm[low][high]);
-    queries++;
-    limits += code == CCD_LIMIT;
-    if (code != CCD_HIT && code != CCD_LIMIT)
-        return 0;
-    contact[0].point1 = contact[0].point2 = hit.pos;
-    contact[0].depth = hit.depth;
-    if (max > 1)
-        n = ccdContacts(&a, &b, &ccd, &hit.normal, SLOP, &cache[low][high], contact, max);
-    supports += a.calls;
-    for (int k = 0; k < n; k++) {
-        dContactGeom *g = (dContactGeom *)((char *)out + written * skip);
-        if (!(contact[k].depth >= 0))
-            continue;
-        for (int m = 0; m < 3; m++) {
-            g->pos[m] = 0.5 * (contact[k].point1.v[m] + contact[k].point2.v[m]);
-            g->normal[m] = -hit.normal.v[m];
-        }
-        g->depth = contact[k].depth;
-        g->g1 = o1;
-        g->g2 = o2;
-        g->side1 = g->side2 = -1;
-        written++;
-    }
-    return written;
-}
-
-static dColliderFn *collider(int other)
-{
-    (void)other;
-    return collide;
-}
-
-static dGeomID make_geometry(const body_t *b)
-{
-    static int convex; /* the class */
-    dGeomClass description = { 0, collider, aabb, NULL, NULL };
-    (void)b;
-    if (!convex)
-        convex = dCreateGeomClass(&description);
-    const dGeomID geom = dCreateGeom(convex);
-    dSpaceAdd(scene.space, geom);
-    return geom;
-}
-
-#else
-static dGeomID make_geometry(const body_t *b) { return ode_geometry(scene.space, b); }
-#endif
 
 /* --- the scenes ---------------------------------------------------------------------- */
 
@@ -148,8 +45,7 @@ static dGeomID make_geometry(const body_t *b) { return ode_geometry(scene.space,
 static int scene_add_shape(void)
 {
     const int i = scene.bodies++;
-    scene.geom[i] = make_geometry(&scene.shape[i]);
-    dGeomSetData(scene.geom[i], (void *)(intptr_t)i);
+    scene.geom[i] = ode_geometry(scene.space, &scene.shape[i]);
     scene.body[i] = NULL;
     return i;
 }
@@ -238,9 +134,9 @@ static void scene_pen(double half_width)
 
 /* Moves every body by up to `nudge` a coordinate, by a random stream of its own, so that
  * two starts differ in nothing else. */
-static void scene_nudge(double nudge)
+static void scene_nudge(unsigned long seed, double nudge)
 {
-    uniform_seed(scene.pile.seed);
+    uniform_seed(seed);
     for (int i = 0; i < scene.bodies; i++)
         if (scene.body[i]) {
             double at[3];
@@ -248,16 +144,16 @@ static void scene_nudge(double nudge)
                 at[j] = dBodyGetPosition(scene.body[i])[j] + uniform(-nudge, nudge);
             dBodySetPosition(scene.body[i], at[0], at[1], at[2]);
         }
-    dRandSetSeed(scene.pile.seed);
+    dRandSetSeed(seed);
 }
 
 /* Bodies in layers above the floor of a pen, turned at random. */
-static void scene_pile(int hulls)
+static void scene_pile(int bodies, int hulls)
 {
     const double half_width = 0.55, pitch = 0.32, layer = 0.33;
     const int side = (int)((2 * half_width - 0.1) / pitch);
     scene_pen(half_width);
-    for (int i = 0; i < scene.pile.bodies; i++) {
+    for (int i = 0; i < bodies; i++) {
         const int b = scene_add_random(i, hulls);
         const int level = i / (side * side), x = i % side, y = i / side % side;
         dQuaternion q;
@@ -271,10 +167,10 @@ static void scene_pile(int hulls)
 
 /* Towers of five flat boxes in a pen, every second one an ODE box, the others hulls; or one in its
  * middle, of hulls alone. Each box begins exactly where the one below ends: a touch at first. */
-static void scene_towers(int one)
+static void scene_towers(int bodies, int one)
 {
     scene_pen(0.8);
-    for (int i = 0; i < scene.pile.bodies; i++) {
+    for (int i = 0; i < bodies; i++) {
         const int b = scene_add(i % 2 || one ? SHAPE_POLYTOPE : SHAPE_BOX, 0.125, 0.125, 0.0625), level = one ? i : i % 5;
         scene_make_dynamic(b);
         const double x = one ? 0 : 0.4 * (i / 5 % 2) - 0.2, y = one ? 0 : 0.4 * (i / 10) - 0.2;
@@ -284,10 +180,9 @@ static void scene_towers(int one)
 
 /* Cylinders that lie on a plate and roll, to and fro between the walls of a pen. The
  * plate is a hull: ODE collides a cylinder with a box without libccd. */
-static void scene_roll(void)
+static void scene_roll(int count)
 {
     const double half_width = 1.5, quarter = 0.5 * 3.14159265358979323846;
-    const int count = scene.pile.bodies;
     scene_pen(half_width);
     dGeomSetPosition(scene.geom[scene_add(SHAPE_POLYTOPE, half_width, half_width, 0.05)], 0, 0, 0.05);
     for (int i = 0; i < count; i++) {
@@ -303,6 +198,18 @@ static void scene_roll(void)
     }
 }
 
+/* Counts a contact; returns whether it is one. Negated so that NaN is none. */
+static int scene_contact(const dContactGeom *g)
+{
+    if (!(fabs(dCalcVectorLengthSquare3(g->normal) - 1) < 1e-6) || !(fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6) ||
+        !(fabs(g->depth) < 1e3)) {
+        scene.bad++;
+        return 0;
+    }
+    scene.deepest = fmax(scene.deepest, g->depth);
+    return 1;
+}
+
 static void scene_near(void *data, dGeomID o1, dGeomID o2)
 {
     enum { MAX_CONTACTS = 8 };
@@ -313,9 +220,7 @@ static void scene_near(void *data, dGeomID o1, dGeomID o2)
         return;
     int n = dCollide(o1, o2, MAX_CONTACTS, &contact[0].geom, sizeof contact[0]);
     for (int i = 0; i < n; i++) {
-        const dContactGeom *g = &contact[i].geom;
-        const int is_valid = fabs(g->pos[0] + g->pos[1] + g->pos[2]) < 1e6;
-        if (!pile_contact(&scene.pile, is_valid ? dCalcVectorLengthSquare3(g->normal) : NAN, g->depth))
+        if (!scene_contact(&contact[i].geom))
             continue;
         contact[i].surface.mode = dContactApprox1;
         contact[i].surface.mu = 0.6;
@@ -326,7 +231,7 @@ static void scene_near(void *data, dGeomID o1, dGeomID o2)
 /* Adds the energies of all bodies, and counts those that left the pen. */
 static void scene_report_step(void)
 {
-    double kinetic = 0, potential = 0;
+    double energy = 0;
     for (int i = 0; i < scene.bodies; i++)
         if (scene.body[i]) {
             const dReal *v = dBodyGetLinearVel(scene.body[i]), *R = dBodyGetRotation(scene.body[i]);
@@ -336,44 +241,50 @@ static void scene_report_step(void)
             dBodyGetMass(scene.body[i], &m);
             for (int j = 0; j < 3; j++)
                 local[j] = R[j] * w[0] + R[4 + j] * w[1] + R[8 + j] * w[2];
-            kinetic += 0.5 * m.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+            energy += 0.5 * m.mass * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
             for (int j = 0; j < 3; j++)
                 for (int k = 0; k < 3; k++)
-                    kinetic += 0.5 * local[j] * m.I[4 * j + k] * local[k];
-            potential += 9.81 * m.mass * p[2];
-            pile_body(&scene.pile, p, scene.half_width, 0);
+                    energy += 0.5 * local[j] * m.I[4 * j + k] * local[k];
+            energy += 9.81 * m.mass * p[2];
+            scene.escaped |= !(fabs(p[0]) < scene.half_width && fabs(p[1]) < scene.half_width && p[2] > 0 && p[2] < 20);
         }
-    pile_energy(&scene.pile, kinetic, potential);
+    scene.least = fmin(scene.least, energy);
+    scene.gained = fmax(scene.gained, energy - scene.least);
 }
 
 int main(int argc, char **argv)
 {
-    scene.pile = pile_start(argc, argv, "pile|hulls|stack|roll|tower");
+    if (argc != 5) {
+        fprintf(stderr, "usage: ode_pile SEED STEPS BODIES pile|hulls|stack|roll|tower\n");
+        return 2;
+    }
+    const unsigned long seed = strtoul(argv[1], NULL, 10);
+    const int bodies = atoi(argv[3]);
+    const char *const name = argv[4];
+    print_library();
     dInitODE2(0);
     scene_world(11);
-    const char *name = scene.pile.scene;
+    scene.least = HUGE_VAL;
     if (!strcmp(name, "tower")) {
-        scene_towers(1);
+        scene_towers(bodies, 1);
     } else if (!strcmp(name, "stack")) {
-        scene_towers(0);
-        scene_nudge(1e-5);
+        scene_towers(bodies, 0);
+        scene_nudge(seed, 1e-5);
     } else if (!strcmp(name, "roll")) {
-        scene_roll();
-        scene_nudge(1e-5);
+        scene_roll(bodies);
+        scene_nudge(seed, 1e-5);
     } else {
-        scene_pile(!strcmp(name, "hulls"));
-        scene_nudge(1e-3);
+        scene_pile(bodies, !strcmp(name, "hulls"));
+        scene_nudge(seed, 1e-3);
     }
-    for (; scene.pile.step < scene.pile.steps; scene.pile.step++) {
+    for (long step = 0; step < atol(argv[2]); step++) {
         dSpaceCollide(scene.space, NULL, scene_near);
         dWorldQuickStep(scene.world, 0.005);
         dJointGroupEmpty(scene.contacts);
         scene_report_step();
     }
-    pile_report(&scene.pile);
-#ifdef CONTACTS
-    printf("own queries %lu supports %lu limits %lu\n", queries, supports, limits);
-#endif
+    printf("pile deepest %.9g gained %.9g escaped %d bad %ld\n", scene.deepest, scene.gained, scene.escaped, scene.bad);
+    printf("processor seconds %.6f\n", (double)clock() / CLOCKS_PER_SEC);
     dJointGroupDestroy(scene.contacts);
     dSpaceDestroy(scene.space);
     dWorldDestroy(scene.world);

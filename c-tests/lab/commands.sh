@@ -48,7 +48,7 @@ page_commands() {
         inside { sub(/(^| +)#.*/, ""); print; next }
         /^ \*     (g\+\+|cc) / { sub(/^ \* +/, ""); print; next }
         { for (i = 2; i <= NF; i += 2)
-              if ($i ~ /^([a-z-]+\.sh|sh|cargo|cc|cmake|sudo|apt-get|ldd|pkg-config|python|rustup|ode_pile|\$\(pkg-config|(CC|LD_[A-Z_]*|C_TESTS_[A-Z]*)=[^ ]*) /) print $i }' |
+              if ($i ~ /^([a-z-]+\.sh|sh|cargo|cc|cmake|sudo|apt-get|ldd|pkg-config|python|rustup|\$\(pkg-config|(CC|LD_[A-Z_]*|C_TESTS_[A-Z]*)=[^ ]*) /) print $i }' |
         sed 's/\\|/|/g; /^$/d' | sort -u
 }
 
@@ -188,7 +188,6 @@ END
 
 elsewhere "steps of release.sh by these names; packaging; itself" <<'END'
 cargo run --release -p lab --bin engines -- long
-cargo run --release -p lab --bin engines -- world
 cargo run --release -p lab --bin campaigns -- rates
 cargo run --release -p lab --bin campaigns -- wide
 cargo vendor
@@ -208,9 +207,8 @@ cargo cinstall
 sudo cargo cinstall --release --locked --prefix=/usr/local && sudo ldconfig
 cargo check
 END
-elsewhere "simulations: the wheel; long: the tower" <<'END'
-python c-tests/lab/engines/wheel.py 1000
-ode_pile 1 3000 6 tower
+elsewhere "simulations: the wheel" <<'END'
+python c-tests/lab/engines/wheel.py
 END
 elsewhere "by hand: needs a nightly Rust, which nothing else does" <<'END'
 sh c-tests/tools/check.sh miri

@@ -52,7 +52,6 @@ step fcl-address sh c-tests/tools/check.sh address -p lab --test lab fcl::
 step miri cargo test -p lab miri::
 step simulations cargo test --no-fail-fast -p lab simulations::
 step long cargo run --release -p lab --bin engines -- long
-step world cargo run --release -p lab --bin engines -- world
 step packaging cargo test --no-fail-fast -p lab packaging::
 step packaging-single cargo test --no-fail-fast -p lab --features single packaging::
 # What test.sh leaves out in single precision: the extension, installing, the documentation's programs.

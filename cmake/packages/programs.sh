@@ -13,8 +13,8 @@ each() {
     "$1" fcl_static "c++ -std=c++17 -D_GNU_SOURCE" "-lfcl" "1 60"
     "$1" ode_static "cc -std=gnu99" "-lode" "1 60"
     "$1" ode_pile "cc -std=gnu99" "-lode" "1 400 40 pile"
-    "$1" mujoco_pile "cc -std=gnu99" "-lmujoco" "1 300 40 pile"
-    "$1" dart_pile "c++ -std=c++17 -D_GNU_SOURCE" "-ldart" "1 200 20 fcl"
+    "$1" mujoco_pile "cc -std=gnu99" "-lmujoco" "1 300 40"
+    "$1" dart_pile "c++ -std=c++17 -D_GNU_SOURCE" "-ldart" "1 200 20"
 }
 
 build() {

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Builds the programs that run before a release alone: other consumers of libccd, and ODE and FCL collided by this
-//! library's own interface.
+//! Builds the programs that run before a release alone: other consumers of libccd, and FCL collided by `<ccd/fcl.hpp>`.
 
 use super::programs::{Method, on_both, program};
 use crate::harness::{self, Executable, Link, Precision, must_succeed, output_dir, root};
@@ -12,8 +11,8 @@ use std::process::Command;
 /// arguments with START for the number of the start, number of steps.
 pub const CONSUMERS: [(&str, &str, &str, f64); 4] = [
     ("ODE, a pile", "ode_pile.c", "START 1500 32 pile", 1500.0),
-    ("MuJoCo 2, a pile", "mujoco_pile.c", "START 1500 30 pile", 1500.0),
-    ("DART over FCL, a pile", "dart_pile.cpp", "START 3000 15 fcl", 3000.0),
+    ("MuJoCo 2, a pile", "mujoco_pile.c", "START 1500 30", 1500.0),
+    ("DART over FCL, a pile", "dart_pile.cpp", "START 3000 15", 3000.0),
     ("FCL, primitives that drift", "fcl_scene.cpp", "0 through primitives 300 200", 300.0),
 ];
 
@@ -37,20 +36,6 @@ pub fn fcl_scene() -> [Method; 4] {
         ours.first("0"),
         Method::ours("`ccd/fcl.hpp`, one contact a pair", header.clone()).first("1"),
         Method::ours("`ccd/fcl.hpp`, up to 8 contacts", header).first("8"),
-    ]
-}
-
-/// Returns an ODE scene on libccd as ODE queries it, and with geometries that this library collides, with one
-/// contact a pair and with several.
-pub fn ode_world(libccd: Method) -> [Method; 3] {
-    let world = |contacts| {
-        let program = program("ode_pile.c").flag(format!("-DCONTACTS={contacts}")).flag("-DOURS_ALONE");
-        program.build()
-    };
-    [
-        libccd,
-        Method::ours("this library, one contact a pair", world(1)),
-        Method::ours("this library, `ccdContacts`", world(8)),
     ]
 }
 

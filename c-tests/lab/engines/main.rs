@@ -5,7 +5,6 @@
 //! library, as Markdown; progress goes to stderr. Exits with 1 if what is judged fails.
 //!
 //! `cargo run --release -p lab --bin engines` the single queries of the test, in more poses (a minute)
-//! `cargo run --release -p lab --bin engines -- world` ODE worlds collided by this library alone (3 minutes)
 //! `cargo run --release -p lab --bin engines -- fcl` what FCL's collide costs, by use (2 minutes)
 //! `cargo run --release -p lab --bin engines -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
 //! `cargo run --release -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
@@ -21,7 +20,7 @@ mod pages;
 
 use engines::consumers::{self, CONSUMERS};
 use engines::programs::{compared, fcl_distance, program, run_all};
-use engines::results::{self, Simulation, swapped};
+use engines::results::{self, simulate};
 use engines::tables;
 use pages::write_between_marks;
 
@@ -29,12 +28,6 @@ use pages::write_between_marks;
 fn print_judged(table: &str, failures: &[String]) -> bool {
     println!("{table}\n{}", failures.join("\n"));
     failures.is_empty()
-}
-
-/// Prints simulations and their failures. Returns whether all that fails is known.
-fn print_simulations(simulations: &[Simulation]) -> bool {
-    let (known, failures) = tables::failures(simulations);
-    print_judged(&(tables::simulation_table(simulations) + "\n" + &known), &failures)
 }
 
 fn single_queries() -> bool {
@@ -49,26 +42,24 @@ fn single_queries() -> bool {
     judged == [true; 2]
 }
 
+/// Prints whole simulations and writes them into the page of the engines.
 fn long() -> bool {
     let [ode, mujoco, dart] =
         ["ode_pile.c", "mujoco_pile.c", "dart_pile.cpp"].map(|file| compared(program(file), "10"));
-    let mut rows = [
-        swapped("ODE, pile", &ode, 8, 5000, "32 pile"),
-        swapped("ODE, convex hulls", &ode, 8, 5000, "32 hulls"),
-        swapped("ODE, towers of boxes and hulls", &ode, 8, 10_000, "20 stack"),
-        swapped("ODE, a tower that touches", &ode, 1, 3000, "6 tower"),
-        swapped("ODE, rolling cylinders", &ode, 8, 5000, "12 roll"),
-        swapped("MuJoCo, pile", &mujoco, 8, 3000, "30 pile"),
-        swapped("MuJoCo, pile, several contacts a pair", &mujoco, 2, 5000, "30 multi"),
-        swapped("MuJoCo, on a height field", &mujoco, 8, 3000, "20 field"),
-        swapped("DART over FCL", &dart, 8, 3000, "15 fcl"),
-        swapped("DART over ODE", &dart, 8, 3000, "15 ode"),
+    let anything = f64::INFINITY;
+    let rows = [
+        simulate("ODE, pile", &ode, 8, 5000, "32 pile").judge_pile(anything, anything),
+        simulate("ODE, convex hulls", &ode, 8, 5000, "32 hulls").judge_pile(anything, anything),
+        simulate("ODE, towers of boxes and hulls", &ode, 8, 10_000, "20 stack").judge_pile(1.0, 5e-3),
+        simulate("ODE, a tower that touches", &ode, 1, 3000, "6 tower").judge_pile(1.0, 5e-3),
+        simulate("ODE, rolling cylinders", &ode, 8, 5000, "12 roll").judge_pile(anything, anything),
+        simulate("MuJoCo, pile", &mujoco, 8, 3000, "30"),
+        simulate("DART over FCL, pile", &dart, 8, 3000, "15"),
     ];
-    rows.iter_mut().filter(|row| row.scene.contains("tower")).for_each(|towers| towers.judge_rest(1.0, 5e-3));
-    rows.iter_mut()
-        .filter(|row| row.scene.ends_with(" pile") || row.scene.starts_with("DART"))
-        .for_each(Simulation::judge_spread);
-    print_simulations(&rows)
+    let table = tables::simulation_table(&rows);
+    write_between_marks("c-tests/engines/README.md", "simulations", &format!("\n{table}\n"));
+    let failures = rows.iter().flat_map(|row| row.failures.iter().map(|text| format!("{}: {text}", row.scene)));
+    print_judged(&table, &failures.collect::<Vec<_>>())
 }
 
 /// Prints the screens, and writes the first into this folder's page.
@@ -85,15 +76,6 @@ fn steps() {
     let table = format!("{}\n\n{}.\n", tables::step_table(3, 8), harness::machine());
     println!("{table}");
     write_between_marks("README.md", "steps", &table);
-}
-
-fn world() -> bool {
-    let rows: [Simulation; 3] =
-        [("stack", 20, 10_000), ("hulls", 32, 3000), ("roll", 12, 3000)].map(|(scene, bodies, steps)| {
-            let [libccd, _] = compared(program("ode_pile.c"), "10");
-            tables::world(libccd, scene, 10, steps, bodies)
-        });
-    print_simulations(&rows)
 }
 
 /// Prints what FCL costs by use, and writes it into the page of the engines.
@@ -114,9 +96,8 @@ fn main() {
         Some("fcl") => fcl(),
         Some("screens") => screens(),
         Some("steps") => steps(),
-        Some("world") => passes = world(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, `distance`, `fcl`, `screens`, `steps`, `world` or `long`");
+            eprintln!("unknown: {other}; nothing, `distance`, `fcl`, `screens`, `steps` or `long`");
             std::process::exit(2);
         }
     }

@@ -3,12 +3,9 @@
 
 //! Runs the scenes that are judged before a release alone, and prints the counters of all as tables.
 
-// Comparisons are negated so that NaN counts as a failure.
-#![allow(clippy::neg_cmp_op_on_partial_ord)]
-
 use super::consumers::{self, CONSUMERS};
 use super::programs::{Method, Output, compared, on_both, program, run_all};
-use super::results::{Simulation, median, range, simulate, values};
+use super::results::{Simulation, median, most, values};
 use crate::pages::markdown;
 
 // --- single queries -------------------------------------------------------------
@@ -126,64 +123,24 @@ pub fn step_table(rounds: usize, starts: usize) -> String {
     markdown("program|libccd, ms a step|here|ratio", CONSUMERS.map(line))
 }
 
-/// Runs and judges an ODE scene by the three methods of [`consumers::ode_world`].
-pub fn world(libccd: Method, scene: &str, starts: usize, steps: usize, bodies: usize) -> Simulation {
-    let methods = consumers::ode_world(libccd);
-    let mut simulation = simulate(scene, &methods, starts, steps, &format!("{bodies} {scene}"));
-    judge_contacts(&mut simulation);
-    simulation
-}
-
-/// Judges several contacts a pair, which are to hold as well as libccd's one at its worst.
-fn judge_contacts(simulation: &mut Simulation) {
-    let [theirs, _, several] = &simulation.runs[..] else { unreachable!() };
-    simulation.failures.extend(several.iter().flat_map(|run| run.nonzero("pile.escaped pile.bad own.limits")));
-    for key in ["pile.gained", "pile.deepest"] {
-        let (median, most) = (median(several, key), range(theirs, key).1);
-        if !(median <= most) {
-            simulation.failures.push(format!("{key}: median {median}, libccd's largest {most}"));
-        }
-    }
-}
-
-/// Returns a row for each simulation and method; medians of the starts but for the deepest contact of all.
+/// Returns a row for each simulation, both libraries in each cell; the energy gained is the median of the starts.
 pub fn simulation_table(simulations: &[Simulation]) -> String {
-    let line = |(simulation, runs): (&Simulation, &Vec<Output>)| {
-        let sum = |key| values(runs, key).iter().sum::<f64>();
-        let deep = runs[0].get("own.deep").map(|_| format!("{} of {}", sum("own.deep"), sum("own.queries")));
+    let line = |simulation: &Simulation| {
+        let runs = &simulation.runs;
+        let cell = |has_it: bool, of: &dyn Fn(&[Output]) -> String| match has_it {
+            true => format!("{} → {}", of(&runs[0]), of(&runs[1])),
+            false => String::new(),
+        };
+        let sum = |runs: &[Output], key| values(runs, key).iter().sum::<f64>();
+        let has_pile = runs[0][0].get("pile.gained").is_some();
         vec![
-            simulation.scene.clone(),
-            format!("{} × {}", runs.len(), simulation.steps),
-            runs[0].method.to_owned(),
-            format!("{:.3}", median(runs, "pile.gained")),
-            format!("{:.1}", 1e3 * median(runs, "pile.deepest")),
-            format!("{:.1}", 1e3 * range(runs, "pile.deepest").1),
-            format!("{:.1}", sum("own.supports") / sum("own.queries")),
-            deep.unwrap_or_default(),
+            simulation.scene.to_owned(),
+            format!("{} × {}", runs[0].len(), simulation.steps),
+            cell(has_pile, &|runs| format!("{:.3}", median(runs, "pile.gained"))),
+            cell(has_pile, &|runs| format!("{:.1}", 1e3 * most(runs, "pile.deepest"))),
+            cell(true, &|runs| format!("{} of {}", sum(runs, "own.deep"), sum(runs, "own.queries"))),
         ]
     };
-    let head = "scene|starts × steps|library|energy gained, J|deepest contact, mm|of all starts|supports a query|\
-                > 1 % too deep";
-    markdown(head, simulations.iter().flat_map(|s| s.runs.iter().map(move |runs| (s, runs))).map(line))
-}
-
-/// Faults of a scene on either library: scene, counter and reason. Known if libccd has them in as many starts.
-const KNOWN: [(&str, &str, &str); 1] =
-    [("DART over ODE", "pile.escaped", "the first impacts, which are deep, throw a body out of the pen")];
-
-/// Returns a line for each known fault of the simulations, and the failures that are not known.
-pub fn failures(simulations: &[Simulation]) -> (String, Vec<String>) {
-    let (mut known, mut failures) = (String::new(), Vec::new());
-    for Simulation { scene, runs, failures: all, .. } in simulations {
-        let starts = |method: usize, key| values(&runs[method], key).iter().filter(|n| **n != 0.0).count();
-        let is_known = |key| starts(1, key) <= starts(0, key);
-        let reason = KNOWN.iter().find(|(name, key, _)| name == scene && is_known(key));
-        let unknown = all.iter().filter(|text| reason.is_none_or(|(_, key, _)| !text.contains(key)));
-        failures.extend(unknown.map(|text| format!("{scene}: {text}")));
-        if let Some((_, key, why)) = reason.filter(|(_, key, _)| starts(1, key) > 0) {
-            let [theirs, ours] = [0, 1].map(|method| starts(method, key));
-            known += &format!("{scene}, known: {key} in {theirs} starts on libccd, {ours} here: {why}\n");
-        }
-    }
-    (known, failures)
+    let head = "scene|starts × steps|energy gained, J|deepest contact, mm|> 1 % too deep, of one query in ten";
+    markdown(head, simulations.iter().map(line))
 }
