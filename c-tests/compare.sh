@@ -7,7 +7,7 @@
 #   compare.sh [OPTION...] PROGRAM [ARGUMENT...]
 #     --every N    judge one query in N (default 10; 0: only count them)
 #     --swap       give the program this library's answers, not libccd's
-#     --keep DIR   write the worst wrong answers there, as C files for replay.sh
+#     --keep DIR   write the worst wrong answers there, as files for replay.sh
 #     --no-times   measure no times: fewer calls of the callbacks
 #     --libccd F   the libccd to compare with (default: the program's; where that is this library, the system's)
 #     --library F  a built libccd.so of this library (default: built now)
@@ -115,8 +115,7 @@ build() {
 . "$here/tools/libccd.sh"
 if [ -z "$libccd" ]; then
     [ $linked != yes ] || libccd=$(printf '%s\n' "$libraries" | loaded_libccd)
-    # The one that the program finds if it loads it later.
-    [ -n "$libccd" ] || libccd=$(LD_PRELOAD=libccd.so.2 LD_TRACE_LOADED_OBJECTS=1 "$(command -v cat)" 2>/dev/null | loaded_libccd)
+    [ -n "$libccd" ] || libccd=$(system_libccd)
     libccd=$(other_libccd "$libccd")
 fi
 [ -n "$libccd" ] && [ -r "$libccd" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
@@ -131,7 +130,7 @@ cp "$counts/ours.so" "$counts/libccd.so.2" # for the program itself
 if [ -n "$keep" ]; then
     mkdir -p "$keep"
     keep=$(cd "$keep" && pwd)
-    rm -f "$keep"/libccd-[0-9].c "$keep"/warmccd-[0-9].c # of an earlier run
+    rm -f "$keep"/libccd-*.txt "$keep"/warmccd-*.txt # of an earlier run
 fi
 
 # --- the run ---------------------------------------------------------------------------
@@ -148,7 +147,7 @@ code=0
 # An interrupt ends the program, not this script, which prints the screen.
 trap : INT
 env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$libccd" CCD_COMPARE_OURS="$counts/ours.so" \
-    CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" CCD_COMPARE_KEEP="$keep" CCD_COMPARE_CASE="$here" \
+    CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" CCD_COMPARE_KEEP="$keep" \
     LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@" || code=$?
 trap - INT
 

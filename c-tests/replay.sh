@@ -40,20 +40,17 @@ mkdir -p "$target/compare"
 # Not in /tmp, which may be mounted noexec.
 work=$(realpath "$(mktemp -d "$target/compare/run.XXXXXX")")
 trap 'rm -rf "$work"' EXIT
-ln -s "$library" "$work/libccd.so.2"
-cc -std=c99 -O2 -ffp-contract=off -I"$here/../include" "$1" -o "$work/case" "$work/libccd.so.2" -lm
+cc -O2 -ffp-contract=off -I"$here" -I"$here/../include" "$here/tools/compare/replay_case.c" "$here/tools/compare/query.c" \
+    -o "$work/replay_case" -lm -ldl
 
-unset LD_LIBRARY_PATH
 # shellcheck source=c-tests/tools/libccd.sh
 . "$here/tools/libccd.sh"
-libccd=$(other_libccd "$(ldd "$work/case" | loaded_libccd)")
+libccd=$(other_libccd "$(system_libccd)")
 if [ -z "$libccd" ]; then
     echo "== no libccd on this system"
 else
     echo "== libccd: $libccd"
-    mkdir "$work/theirs"
-    ln -s "$libccd" "$work/theirs/libccd.so.2"
-    LD_LIBRARY_PATH=$work/theirs "$work/case" || true
+    "$work/replay_case" "$1" "$libccd" libccd || true
 fi
 echo "== this library"
-LD_LIBRARY_PATH=$work "$work/case"
+"$work/replay_case" "$1" "$library" warmccd

@@ -99,7 +99,7 @@ END
 run "a program that loads libccd later" "^this library " 's/^/sh c-tests\//; s/python/python3/' <<'END'
 compare.sh python app.py
 END
-run "a wrong answer, repeated" "right$" 's/FILE/--trace kept\/libccd-1.c/' <<'END'
+run "a wrong answer, repeated" "right$" 's/FILE/--trace kept\/libccd-deep.txt/' <<'END'
 sh c-tests/replay.sh FILE
 END
 run "FCL's signed distance" "^depth 0.100" "" <<'END'

@@ -8,6 +8,11 @@ loaded_libccd() {
     sed -n 's|.*libccd\.so\.2 => \(/.*\) (0x.*|\1|p' | head -n 1
 }
 
+# system_libccd: prints the libccd.so.2 that the dynamic linker finds for a program that loads it later
+system_libccd() {
+    LD_PRELOAD=libccd.so.2 LD_TRACE_LOADED_OBJECTS=1 "$(command -v cat)" 2>/dev/null | loaded_libccd
+}
+
 # other_libccd FILE: prints FILE, or if that is this library, as after an installation to /usr/local, or empty, the first
 # libccd.so.2 in the dynamic linker's cache that is not; nothing if there is none
 other_libccd() {

@@ -46,7 +46,7 @@ cp "$here/newcomer.cpp" "$root/root/program.cpp"
 in_chroot "$name" sh -c 'cd /root && g++ -O2 -I/usr/include/eigen3 program.cpp -lfcl -o program && rm -rf kept'
 start=$(date +%s)
 in_clone sh c-tests/compare.sh --keep /root/kept /root/program
-in_clone sh c-tests/replay.sh /root/kept/libccd-1.c
+in_clone sh c-tests/replay.sh /root/kept/libccd-deep.txt
 echo "newcomer.sh: the screen and the replay took $(($(date +%s) - start)) s"
 if [ $# -eq 2 ]; then
     echo "== the tests"

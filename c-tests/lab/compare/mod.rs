@@ -244,31 +244,25 @@ fn the_other_libccd_is_found() {
     assert!(screen.contains("What the swap changes"), "{screen}");
 }
 
-/// A case compiles by itself, shows libccd's fault again, and is answered right by this library.
+/// A case shows libccd's fault again, and is answered right by this library.
 #[test]
 fn written_cases_replay() {
     let dir = tempfile::tempdir().expect("a directory");
     let keep = dir.path().to_str().expect("a path");
     let (_, screen) = screen("plain", &["--every", "1", "--keep", keep]);
-    let kept: Vec<_> = (1..=5).map(|i| dir.path().join(format!("libccd-{i}.c"))).filter(|path| path.exists()).collect();
-    assert!(kept.len() >= 3, "{screen}");
-    let left = std::fs::read_dir(dir.path()).expect("the directory").count();
-    assert_eq!(left, kept.len(), "nothing else is left there");
+    let kept: Vec<_> =
+        std::fs::read_dir(dir.path()).expect("the directory").map(|file| file.expect("a file").path()).collect();
+    assert!(kept.len() >= 2, "{screen}");
     for path in &kept {
-        assert!(screen.contains(path.to_str().expect("a path")), "{screen}");
-        // with libccd's header alone and the compiler's strictest warnings
-        let case = Program::new(path).system_headers();
-        let case = on_libccd(case.strict());
-        assert_eq!(case.run_to_end([""; 0]).0.code(), Some(1), "{path:?}");
-        let right = case.swapped().run([""; 0]).stdout;
-        assert!(right.contains(": right"), "{right}");
+        let name = path.to_str().expect("a path");
+        assert!(name.contains("/libccd-") && screen.contains(name), "{screen}");
+        let mut replay = Command::new("sh");
+        replay.arg(root().join("c-tests/replay.sh"));
+        replay.arg("--library").arg(harness::library(harness::Precision::Double).dir.join("libccd.so"));
+        let stdout = harness::must_succeed(replay.arg(path), "replay.sh").stdout;
+        let (theirs, ours) = stdout.split_once("== this library").expect("two answers");
+        assert!(theirs.contains("== libccd: ") && !theirs.contains(": right") && ours.contains(": right"), "{stdout}");
     }
-    let library = harness::library(harness::Precision::Double);
-    let mut replay = Command::new("sh");
-    replay.arg(root().join("c-tests/replay.sh"));
-    replay.arg("--library").arg(library.dir.join("libccd.so"));
-    let stdout = harness::must_succeed(replay.arg(&kept[0]), "replay.sh").stdout;
-    assert!(stdout.contains("== libccd: ") && stdout.contains("== this library"), "{stdout}");
 }
 
 /// The trace of a kept case has a line for each support point, and the end with bounds that have met.
@@ -277,7 +271,7 @@ fn a_trace_shows_every_direction_and_the_end() {
     let dir = tempfile::tempdir().expect("a directory");
     screen("plain", &["--every", "1", "--keep", dir.path().to_str().expect("a path")]);
     let mut replay = Command::new("sh");
-    replay.arg(root().join("c-tests/replay.sh")).arg("--trace").arg(dir.path().join("libccd-1.c"));
+    replay.arg(root().join("c-tests/replay.sh")).arg("--trace").arg(dir.path().join("libccd-deep.txt"));
     let trace = harness::must_succeed(&mut replay, "replay.sh").stderr;
     let directions: Vec<_> = trace.lines().filter(|line| line.contains("  bounds ")).collect();
     assert!(directions.len() >= 4 && directions[0].starts_with("start "), "{trace}");

@@ -55,6 +55,8 @@ void query_library(const library_t *library, const query_t *q, answer_t *out);
 /* Makes depth and direction of the vector that ccdGJKSeparate returns. */
 void answer_by_length(answer_t *out);
 
+verdict_t answer_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth);
+
 static inline int is_hit(int call, int code) { return code == call_table[call].hit; }
 
 /* Returns whether the call returns yes or no alone. */
@@ -119,7 +121,6 @@ typedef struct {
     int base;         /* whose answers the program got */
     int timed;        /* whether times are measured */
     const char *keep; /* folder of wrong answers; NULL: none is written */
-    const char *case_source; /* folder of the headers that a case ends with */
 } compare_t;
 
 typedef struct {
@@ -144,10 +145,8 @@ void judge_query(const compare_t *compare, const query_t *q, const answer_t *own
 enum { MAX_CALLS = 100000 };
 request_t request_of(request_kind_t kind, const library_t *library, const query_t *q, samples_t *samples);
 
-verdict_t answer_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth);
-
-/* write_case.c: writes the answer of one library as a C file if it is among its worst and the file
- * shows it again. */
+/* write_case.c: writes the answer of one library as a file if it is its worst of this kind and the file shows it
+ * again. */
 void save_case(const compare_t *compare, const judged_t *s, int side);
 
 /* Nanoseconds. */

@@ -21,7 +21,7 @@ fn recorded_contacts_are_judged_and_a_wrong_answer_repeats() {
 
     let mut replay = Command::new("sh");
     replay.arg(root().join("c-tests/replay.sh")).arg("--library");
-    replay.arg(harness::library(Precision::Double).dir.join("libccd.so")).arg(dir.path().join("libccd-1.c"));
+    replay.arg(harness::library(Precision::Double).dir.join("libccd.so")).arg(dir.path().join("libccd-deep.txt"));
     let shown = harness::must_succeed(&mut replay, "replay.sh").stdout;
     assert!(shown.contains("== libccd: ") && shown.contains("== this library") && shown.contains(": right"), "{shown}");
 }

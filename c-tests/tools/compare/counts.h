@@ -43,10 +43,11 @@ typedef struct {
 
 static const char *const COMPARE_SIDE_NAME[COMPARE_SIDES] = { "libccd", "warmccd" };
 
-/* Cases written, of each library: SIDE-NUMBER.c. */
-enum { MAX_SAVED = 5 };
+/* Cases written: the worst of each wrong verdict of each library. */
+#define CASE_PATH "%s/%s-%s.txt"
+static const char *const CASE_NAME[VERDICTS] = { "right", "missed", "false", "broken", "deep", "unsound" };
 typedef struct {
-    uint64_t used, verdict;
+    uint64_t used;
     double score; /* the error, metres a metre of the smaller object */
     char title[192];
 } saved_case_t;
@@ -61,7 +62,7 @@ typedef struct {
     uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
     uint64_t process_nanoseconds, judge_nanoseconds; /* processor time of all, and of it the tool's */
     uint64_t saving; /* a lock */
-    saved_case_t saved[COMPARE_SIDES][MAX_SAVED];
+    saved_case_t saved[COMPARE_SIDES][VERDICTS];
 } compare_counts_t;
 
 #endif

@@ -114,14 +114,6 @@ static int bound_truth(const compare_t *compare, judged_t *s)
 
 /* --- judging ------------------------------------------------------------------------ */
 
-verdict_t answer_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth)
-{
-    verdict_answer_t a = { answer->hit, !is_intersect(q->call), (double)answer->depth, (double)ccdVec3Len2(&answer->dir) };
-    if (q->call == CALL_SEPARATE && answer->depth == 0)
-        a.length2 = 1; /* a vector of no length has no direction */
-    return verdict(&a, truth);
-}
-
 /* Returns by how much the points for other directions, or the centre, exceed the support value of this
  * sample: of a convex shape by rounding alone. */
 static double inconsistency_at(const samples_t *samples, int which, const support_sample_t *p)

@@ -15,7 +15,7 @@
  *   CCD_COMPARE_BASE    theirs or ours: whose answers the program gets
  *   CCD_COMPARE_EVERY   one query in so many is judged; 0: none
  *   CCD_COMPARE_TIMES   0: no times are measured
- *   CCD_COMPARE_KEEP, CCD_COMPARE_CASE   folder of wrong answers, and of the headers that their files end with */
+ *   CCD_COMPARE_KEEP    folder of wrong answers */
 
 #define _GNU_SOURCE
 #include "tools/compare/compare.h"
@@ -84,7 +84,6 @@ static void start(void)
     compare.base = strcmp(base_name, "theirs") != 0 ? COMPARE_OURS : COMPARE_THEIRS;
     compare.timed = strcmp(setting("CCD_COMPARE_TIMES", "1"), "0") != 0;
     compare.keep = setting("CCD_COMPARE_KEEP", NULL);
-    compare.case_source = setting("CCD_COMPARE_CASE", NULL);
     base = &compare.library[compare.base];
     every = strtoull(setting("CCD_COMPARE_EVERY", "1"), NULL, 10);
     pthread_atfork(NULL, NULL, forked);

@@ -74,6 +74,14 @@ void answer_by_length(answer_t *out)
         ccdVec3Scale(&out->dir, 1 / out->depth);
 }
 
+verdict_t answer_verdict(const query_t *q, const answer_t *answer, const verdict_truth_t *truth)
+{
+    verdict_answer_t a = { answer->hit, !is_intersect(q->call), (double)answer->depth, (double)ccdVec3Len2(&answer->dir) };
+    if (q->call == CALL_SEPARATE && answer->depth == 0)
+        a.length2 = 1; /* a vector of no length has no direction */
+    return verdict(&a, truth);
+}
+
 /* --- recording callbacks ---------------------------------------------------------- */
 
 /* The object behind a pointer. */

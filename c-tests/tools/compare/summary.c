@@ -176,9 +176,9 @@ static void print_saved(const char *dir)
 {
     int none = 1;
     for (int side = 0; side < COMPARE_SIDES; side++)
-        for (int i = 0; i < MAX_SAVED; i++)
+        for (int i = 0; i < VERDICTS; i++)
             if (all.saved[side][i].used) {
-                printf("%s/%s-%d.c %s\n", dir, COMPARE_SIDE_NAME[side], i + 1, all.saved[side][i].title);
+                printf(CASE_PATH " %s\n", dir, COMPARE_SIDE_NAME[side], CASE_NAME[i], all.saved[side][i].title);
                 none = 0;
             }
     if (none)
