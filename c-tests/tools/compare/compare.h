@@ -133,7 +133,7 @@ typedef struct {
     answer_t answer[COMPARE_SIDES];
     verdict_t verdict[COMPARE_SIDES];
     int slanted[COMPARE_SIDES], aside[COMPARE_SIDES]; /* as counted: counts.h */
-    unsigned long calls[COMPARE_SIDES], minimum_calls;
+    unsigned long calls[COMPARE_SIDES];
 } judged_t;
 
 /* Puts a query of the program's to libccd, to this library and to the proven minimum, judges the answers

@@ -36,9 +36,6 @@ typedef struct {
     uint64_t uncertain; /* an answer is right only within the error of callbacks that contradict each other */
     uint64_t contradicted; /* a proven lower bound above a support value: this library's fault */
     compare_side_t side[COMPARE_SIDES];
-    uint64_t minimum_calls, minimum_nanoseconds;
-    /* the swap: hits of one library alone, and of both: libccd's depth more than 1 % deeper, its direction 10 degrees off */
-    uint64_t found, gone, both, deeper, turned;
 } compare_call_t;
 
 static const char *const COMPARE_SIDE_NAME[COMPARE_SIDES] = { "libccd", "warmccd" };
@@ -59,7 +56,6 @@ typedef struct {
     uint64_t base;               /* whose answers the program gets */
     compare_call_t call[LIBCCD_CALL_COUNT];
     uint64_t raw_supports; /* __ccdSupport, which FCL's own GJK calls */
-    uint64_t callback_pairs, callback_nanoseconds; /* support1 and support2 alone */
     uint64_t process_nanoseconds, judge_nanoseconds; /* processor time of all, and of it the tool's */
     uint64_t saving; /* a lock */
     saved_case_t saved[COMPARE_SIDES][VERDICTS];

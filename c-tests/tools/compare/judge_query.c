@@ -102,7 +102,6 @@ static int bound_truth(const compare_t *compare, judged_t *s)
     double largest = 0, size[2];
     if (guard_run(request_run, &r) != GUARD_RETURNED)
         return -1;
-    s->minimum_calls = r.calls;
     size[0] = extent(s->samples, 0, &largest);
     size[1] = extent(s->samples, 1, &largest);
     s->size = fmin(size[0], size[1]) > 0 ? fmin(size[0], size[1]) : fmax(size[0], size[1]);
@@ -188,53 +187,27 @@ static void check_move(const compare_t *compare, judged_t *s, int side)
 
 /* --- times -------------------------------------------------------------------------- */
 
-enum { ROUNDS = 3, PAIRS = 8 };
-
-enum { TIME_MINIMUM = COMPARE_SIDES, TIME_CALLBACKS, TIMES };
+enum { ROUNDS = 3 };
 
 typedef struct {
     const compare_t *compare;
     const query_t *q;
-    const samples_t *samples;
-    double least[TIMES]; /* nanoseconds: of either library, of the proven minimum, of PAIRS support points */
+    double least[COMPARE_SIDES]; /* nanoseconds */
 } timing_t;
 
-static void run_timed(const timing_t *t, int what)
-{
-    const library_t *const library = t->compare->library;
-    const query_t *q = t->q;
-    if (what < COMPARE_SIDES) {
-        answer_t answer;
-        query_library(&library[what], q, &answer);
-    } else if (what == TIME_MINIMUM) {
-        ccd_penetration_t out;
-        ccd_t ccd = *q->ccd;
-        ccd.epa_tolerance = (ccd_real_t)query_tolerance(q);
-        library[COMPARE_OURS].proven(q->obj[0], q->obj[1], &ccd, NULL, CCD_WANT_POS, &out);
-    } else {
-        /* in the directions of the queries */
-        ccd_vec3_t point;
-        for (int i = 0; i < PAIRS; i++) {
-            q->ccd->support1(q->obj[0], &t->samples->sample[0][i % t->samples->count[0]].dir, &point);
-            q->ccd->support2(q->obj[1], &t->samples->sample[1][i % t->samples->count[1]].dir, &point);
-        }
-    }
-}
-
-/* Measures the least of several rounds, in turn, so that all meet the same states of the machine.
+/* Measures the least of several rounds, in turn, so that both meet the same states of the machine.
  * Quick queries run several times in a row: reading the clock takes as long as one. */
 static void measure_times(void *argument)
 {
     timing_t *t = (timing_t *)argument;
     int times = 1;
-    for (int what = 0; what < TIMES; what++)
-        t->least[what] = HUGE_VAL;
     for (int round = 0; round < ROUNDS; round++) {
-        for (int what = 0; what < TIMES; what++) {
+        for (int side = 0; side < COMPARE_SIDES; side++) {
+            answer_t answer;
             const uint64_t start = clock_now(CLOCK_MONOTONIC);
             for (int i = 0; i < times; i++)
-                run_timed(t, what);
-            t->least[what] = fmin(t->least[what], (double)(clock_now(CLOCK_MONOTONIC) - start) / times);
+                query_library(&t->compare->library[side], t->q, &answer);
+            t->least[side] = fmin(t->least[side], (double)(clock_now(CLOCK_MONOTONIC) - start) / times);
         }
         times = t->least[0] + t->least[1] < 20e3 ? 4 : 1;
     }
@@ -243,15 +216,12 @@ static void measure_times(void *argument)
 static void count_times(const compare_t *compare, const judged_t *s)
 {
     compare_call_t *c = &compare->counts->call[s->q->call];
-    timing_t t = { compare, s->q, s->samples, {0} };
-    if (!s->samples->count[0] || !s->samples->count[1] || guard_run(measure_times, &t) != GUARD_RETURNED)
+    timing_t t = {compare, s->q, {HUGE_VAL, HUGE_VAL}};
+    if (guard_run(measure_times, &t) != GUARD_RETURNED)
         return;
     count_add(&c->timed, 1);
     for (int side = 0; side < COMPARE_SIDES; side++)
         count_add(&c->side[side].nanoseconds, (uint64_t)t.least[side]);
-    count_add(&c->minimum_nanoseconds, (uint64_t)t.least[TIME_MINIMUM]);
-    count_add(&compare->counts->callback_pairs, PAIRS);
-    count_add(&compare->counts->callback_nanoseconds, (uint64_t)t.least[TIME_CALLBACKS]);
 }
 
 /* --- counting ----------------------------------------------------------------------- */
@@ -272,18 +242,6 @@ static void count_side(compare_side_t *to, const judged_t *s, int side)
         count_add(&to->with_error, 1);
         count_add(&to->error_sum, error);
         count_largest(&to->error_max, error);
-    }
-}
-
-static void count_change(compare_call_t *to, const judged_t *s)
-{
-    const answer_t *theirs = &s->answer[COMPARE_THEIRS], *ours = &s->answer[COMPARE_OURS];
-    count_add(&to->found, ours->hit && !theirs->hit);
-    count_add(&to->gone, theirs->hit && !ours->hit);
-    if (has_depth(s->q, theirs) && has_depth(s->q, ours)) {
-        count_add(&to->both, 1);
-        count_add(&to->deeper, theirs->depth > (ccd_real_t)1.01 * ours->depth);
-        count_add(&to->turned, !((double)ccdVec3Dot(&theirs->dir, &ours->dir) > 0.9848)); /* the cosine of 10 degrees */
     }
 }
 
@@ -404,11 +362,9 @@ void judge_query(const compare_t *compare, const query_t *q, const answer_t *own
     }
     if (end == JUDGED) {
         count_add(&c->judged, 1);
-        count_add(&c->minimum_calls, s.minimum_calls);
         count_add(&c->overlaps, s.truth.lower > s.truth.contact_eps);
         for (int side = 0; side < COMPARE_SIDES; side++)
             count_side(&c->side[side], &s, side);
-        count_change(c, &s);
         if (compare->timed)
             count_times(compare, &s);
         for (int side = 0; side < COMPARE_SIDES && compare->keep; side++)

@@ -71,50 +71,21 @@ static void print_calls(compare_call_t *sum)
         printf("%s did not return: an exception or a jump out of a callback\n", thousands(sum->queries - sum->returned));
 }
 
-static const char *price(double nanoseconds)
-{
-    char *out = short_text();
-    const int is_small = nanoseconds < 1000;
-    snprintf(out, 48, "%.*f %s", is_small ? 0 : 2, is_small ? nanoseconds : nanoseconds / 1000, is_small ? "ns" : "us");
-    return out;
-}
-
-/* A query of s support points at p nanoseconds and arithmetic a takes a + s p. Both libraries take the same time
- * at the p for which these are equal: today's plus the difference of times over that of support points. Above it
- * the one that needs fewer is the faster. */
-static const char *break_even(const compare_call_t *c)
-{
-    const compare_side_t *theirs = &c->side[COMPARE_THEIRS], *ours = &c->side[COMPARE_OURS];
-    const double now = part(all.callback_nanoseconds, all.callback_pairs);
-    const double slower = part(ours->nanoseconds, c->timed) - part(theirs->nanoseconds, c->timed);
-    const double fewer = 0.5 * (part(theirs->calls, c->judged) - part(ours->calls, c->judged));
-    const double even = now + slower / fewer;
-    if (!c->timed || !(fewer != 0 && even > 0))
-        return !c->timed ? "" : slower < 0 ? "always" : "never";
-    char *out = short_text();
-    snprintf(out, 48, "%s %s", fewer > 0 ? "above" : "below", price(even));
-    return out;
-}
-
 static void print_side(const char *name, const compare_side_t *s, const compare_call_t *c)
 {
     const uint64_t *v = s->verdict;
     printf("%-20s %7s %6s %7s %7s %8s", name, thousands(v[VERDICT_MISSED]), thousands(v[VERDICT_SPURIOUS]),
            thousands(v[VERDICT_INVALID]), thousands(v[VERDICT_DEEP]), thousands(v[VERDICT_UNSOUND]));
-    printf(" %8.3g %8.3g %9.2f %7.0f", 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
+    printf(" %8.3g %8.3g %9.2f %7.0f\n", 1e6 * PICO * part(s->error_sum, s->with_error), 1e6 * PICO * (double)s->error_max,
            0.5 * part(s->calls, c->judged), part(s->nanoseconds, c->timed));
 }
 
 static void print_wrong(const compare_call_t *c, const char *call)
 {
-    printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s  %s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um",
-           "max um", "supports", "ns", "faster");
+    printf("\n%-20s %7s %6s %7s %7s %8s %8s %8s %9s %7s\n", call, "missed", "false", "broken", "> 1 %", "unsound", "mean um",
+           "max um", "supports", "ns");
     print_side("libccd", &c->side[COMPARE_THEIRS], c);
-    printf("\n");
     print_side("this library", &c->side[COMPARE_OURS], c);
-    printf("  %s\n", break_even(c));
-    printf("%-20s %57s %9.2f %7.0f\n", "proven minimum", "", 0.5 * part(c->minimum_calls, c->judged),
-           part(c->minimum_nanoseconds, c->timed));
 }
 
 /* Prints why queries were not judged, and faults of the callbacks. */
@@ -137,15 +108,13 @@ static void print_notes(const compare_call_t *sum)
             printf("%s %s\n", thousands(notes[i].count), notes[i].text);
 }
 
-/* Prints which library is faster for this program, and the share of queries in its time. */
+/* Prints what the queries cost this program on the other library. */
 static void print_price(const compare_call_t *sum)
 {
-    const compare_side_t *theirs = &sum->side[COMPARE_THEIRS], *ours = &sum->side[COMPARE_OURS];
-    const double ratio = part(ours->nanoseconds, 1) / part(theirs->nanoseconds, 1);
-    if (!sum->timed || !all.callback_pairs)
+    const uint64_t theirs = sum->side[COMPARE_THEIRS].nanoseconds, ours = sum->side[COMPARE_OURS].nanoseconds;
+    if (!sum->timed || !theirs)
         return;
-    printf("A support point of both your objects costs %s: this library is the %s one, a query takes %.2f times libccd's time.\n",
-           price(part(all.callback_nanoseconds, all.callback_pairs)), ratio < 1 ? "faster" : "slower", ratio);
+    printf("A query takes %.2f times libccd's time.\n", (double)ours / (double)theirs);
     if (all.process_nanoseconds > all.judge_nanoseconds) {
         const double own = (double)(all.process_nanoseconds - all.judge_nanoseconds), queries = (double)sum->queries;
         const double share = queries * part(sum->side[all.base].nanoseconds, sum->timed) / own;
@@ -153,23 +122,6 @@ static void print_price(const compare_call_t *sum)
         printf("  Queries are %.1f %% of this program's %.2f s; on %s the program would take %+.1f %%.\n", 100 * share,
                1e-9 * own, all.base == COMPARE_THEIRS ? "this library" : "libccd", 100 * (other - share));
     }
-}
-
-static void print_change(const compare_call_t *sum)
-{
-    const compare_side_t *theirs = &sum->side[COMPARE_THEIRS];
-    if (!sum->judged)
-        return;
-    printf("What the swap changes, of %s judged: %s hits more, %s fewer", thousands(sum->judged), thousands(sum->found),
-           thousands(sum->gone));
-    if (sum->both)
-        printf("; of %s common hits %.1f %% of libccd's depths\n"
-               "  are more than 1 %% deeper, %.1f %% of the directions differ by more than 10 degrees",
-               thousands(sum->both), 100 * part(sum->deeper, sum->both), 100 * part(sum->turned, sum->both));
-    printf(".\n");
-    if (theirs->verdict[VERDICT_INVALID])
-        printf("  %s hits of libccd have no direction (a touch); here they are misses, or hits with one.\n",
-               thousands(theirs->verdict[VERDICT_INVALID]));
 }
 
 static void print_saved(const char *dir)
@@ -204,7 +156,6 @@ static void print_screen(const char *every, const char *code)
     printf("\n");
     print_notes(&sum);
     print_price(&sum);
-    print_change(&sum);
 }
 
 /* --- for programs --------------------------------------------------------------------- */
