@@ -4,9 +4,9 @@
 #
 # The main job: one unmodified C program over a recorded contact sequence, on the system's libccd, if there is one, and on
 # this library; and the same pairs through this library's extension, cold and warm. Each run is a process, the runs take
-# turns, and time is processor time: the best of each frame's passes and of each method's turns. The last lines are the
-# verdict. Sets itself up.
-#   main.sh readme   also writes the table of README.md
+# turns, and time is processor time: the best of each frame's passes and of each method's turns. At last come the table of
+# README.md and the number of wrong results. Sets itself up.
+#   main.sh readme   also writes the table into it
 
 set -eu
 cd "$(dirname "$0")/.."
@@ -53,7 +53,7 @@ figures='
     function breakeven(n, base) {
         if (ns[n] <= ns[base]) return "always"
         if (supports[base] <= supports[n]) return "never"
-        return sprintf("%.2f us", (cost[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
+        return sprintf("%.2f µs", (cost[ARGV[1]] + (ns[n] - ns[base]) / (supports[base] - supports[n])) / 1000)
     }'
 
 # show TITLE TABLE
@@ -104,35 +104,12 @@ hit ns    nanoseconds a query of the pairs that overlap, and of all; best of tur
 
 END
 
-# Prints the last lines: the results of the same program on either library.
-verdict() {
-    awk "$figures"'
-        function ratio(a, b) { return sprintf("%.2f", a / b) }
-        END {
-            theirs = ARGV[1]; ours = ARGV[2]; warm = ARGV[3]
-            mpr = ours SUBSEP "MPR"; gjk = ours SUBSEP "GJK + EPA"
-            lean = warm SUBSEP "MPR, no pos"
-            base = theirs SUBSEP "MPR"; epa = theirs SUBSEP "GJK + EPA"
-            printf "%d recorded pairs, %d of them overlap; libccd, this library, this library without pos:\n", pairs, overlaps
-            row = "  %-38s %9s %9s %9s\n"
-            printf row, "wrong results, ccdMPRPenetration", wrong[base], wrong[mpr], wrong[lean]
-            printf row, "wrong results, ccdGJKPenetration", wrong[epa], wrong[gjk], ""
-            printf row, "support points, ccdMPRPenetration", supports[base], supports[mpr], supports[lean]
-            printf row, "time, all pairs", "1.00", ratio(ns[mpr], ns[base]), ratio(ns[lean], ns[base])
-            printf row, "time, pairs that overlap", "1.00", ratio(hit[mpr], hit[base]), ratio(hit[lean], hit[base])
-            printf row, "faster if a support point costs above", "", breakeven(mpr, base), breakeven(lean, base)
-            printf "Wrong results of ccdMPRPenetration: %d with libccd, %d with this library. ", wrong[base], wrong[mpr]
-            printf "A support point (a call of both support functions) costs %.3f us in this program.\n", cost[theirs] / 1000
-        }' "$@"
-}
-
 # Prints the table of README.md.
 readme_table() {
     awk "$figures"'
         function row(call, file, name, proven) {
             n = file SUBSEP name
             even = n == base ? "" : breakeven(n, base)
-            sub("us", "µs", even)
             share = wrong[n] ? sprintf("%.2f %%", 100 * wrong[n] / pairs) : "0"
             printf "| %s | %s | %s | %.1f | %.2f | %.2f | %s |\n", call, share, proven, supports[n],
                    ns[n] / ns[base], hit[n] / hit[base], even
@@ -150,19 +127,31 @@ readme_table() {
             row("`ccdMPRPenetrationWarm`, `pos` NULL", warm, "MPR, warm, no pos", "0.1 %")
             row("`ccdGJKPenetration`", ours, "GJK + EPA", "tolerance")
         }' theirs.txt ours.txt warm.txt
+    printf '\n%s.\n' "$machine"
+}
+
+# verdict FILE...: prints the last line, of libccd's table, if there is one, and of this library's
+verdict() {
+    awk "$figures"'
+        END {
+            printf "Wrong results of ccdMPRPenetration: "
+            for (i = 1; i < ARGC; i++)
+                printf "%d with %s%s", wrong[ARGV[i] SUBSEP "MPR"], ARGV[i] == "ours.txt" ? "this library" : "libccd",
+                       i < ARGC - 1 ? ", " : ".\n"
+        }' "$@"
 }
 
 cd "$work"
-if [ "${1:-}" = readme ] && [ -e theirs.txt ]; then
-    readme_table >table.md
-    printf '\n%s.\n' "$machine" >>table.md
-    awk '/^<!-- main.sh readme -->/ { print; while ((getline line < "table.md") > 0) print line; skip = 1 }
-        /^<!-- end -->/ { skip = 0 }
-        !skip' "$OLDPWD/README.md" >README.new
-    cat README.new >"$OLDPWD/README.md"
-fi
 if [ -e theirs.txt ]; then
-    verdict theirs.txt ours.txt warm.txt
+    readme_table | tee table.md
+    if [ "${1:-}" = readme ]; then
+        awk '/^<!-- main.sh readme -->/ { print; while ((getline line < "table.md") > 0) print line; skip = 1 }
+            /^<!-- end -->/ { skip = 0 }
+            !skip' "$OLDPWD/README.md" >README.new
+        cat README.new >"$OLDPWD/README.md"
+    fi
+    printf '\n'
+    verdict theirs.txt ours.txt
 else
-    awk "$figures"'END { printf "Wrong results of ccdMPRPenetration: %d of %d\n", wrong[ARGV[1] SUBSEP "MPR"], pairs }' ours.txt
+    verdict ours.txt
 fi
