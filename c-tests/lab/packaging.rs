@@ -4,10 +4,10 @@
 //! Ways to build and install that no commit changes by accident: add_subdirectory, FetchContent, DESTDIR, the source
 //! archive; a Rust that is too old; sizes and notices of the installed files.
 
-use crate::harness::{self, Precision, output_dir, root};
+use crate::harness::{self, Precision, root};
 use crate::install::{
     assert_all_run_on_ours, assert_runs_on_ours, assert_small, build, c_compiler, cmake, configure, consumer, define,
-    empty_dir, find, installed_and_moved, page, precision_option, run, size,
+    empty_dir, find, installed_and_moved, precision_option, run, size,
 };
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -43,51 +43,6 @@ fn add_subdirectory_and_fetch_content() {
             break;
         }
     }
-}
-
-/// Fetches the library by FetchContent from a git repository, at the branch that cmake/README.md names.
-#[test]
-#[cfg_attr(feature = "single", ignore = "the same in both precisions")]
-fn fetch_content_from_git() {
-    if !root().join(".git").exists() {
-        println!("skipped: not a git repository");
-        return;
-    }
-    let git = |dir: &Path, args: &[&dyn AsRef<OsStr>]| {
-        let args = [&[&"-C" as &dyn AsRef<OsStr>, &dir], args].concat();
-        run(Command::new("git"), &args).trim().to_owned()
-    };
-    let page = page("cmake/README.md");
-    let tag = page
-        .split_once("GIT_TAG ")
-        .and_then(|(_, rest)| rest.split([' ', ')']).next())
-        .expect("the page names a branch");
-    assert_eq!(tag, "main");
-    // The tracked files as they are now, committed to a new repository: the time stamps of the
-    // index and the user's git identity do not matter.
-    let upstream = empty_dir("upstream");
-    let branch = format!("--initial-branch={tag}");
-    git(&upstream, &[&"init", &"--quiet", &branch]);
-    let files = git(root(), &[&"ls-files", &"-z", &"--cached"]);
-    for file in files.split_terminator('\0') {
-        let to = upstream.join(file);
-        fs::create_dir_all(to.parent().expect("a directory")).expect("a directory can be made");
-        // A tracked file may be deleted in the working tree.
-        if root().join(file).exists() {
-            fs::copy(root().join(file), to).expect("a file can be copied");
-        }
-    }
-    git(&upstream, &[&"add", &"--all", &"--force"]);
-    let mut commit = Command::new("git");
-    commit.arg("-C").arg(&upstream);
-    commit.args(["-c", "user.name=Test", "-c", "user.email=test@localhost"]);
-    commit.args(["commit", "--quiet", "--no-gpg-sign", "-m", "files"]);
-    run(commit, &[]);
-
-    // Cargo's folder is its own: sources of two places would replace each other's libraries.
-    let cargo = define("CCD_CARGO_TARGET_DIR", output_dir().join("packaging/cargo-git"));
-    let build = consumer("git", "git", &[define("TAG", tag), define("REPOSITORY", upstream), cargo]);
-    assert_all_run_on_ours(&build, &build, &["plain", "namespaced"]);
 }
 
 /// Checks that with BUILD_SHARED_LIBS=OFF `ccd` is the static library, in a build tree and installed.

@@ -78,7 +78,7 @@ typedef struct {
     support_sample_t sample[2][MAX_SAMPLES];
     int count[2];
     ccd_vec3_t centre[2], first_dir;
-    int has_centre[2], has_first_dir;
+    int has_centre[2];
     double least;
     ccd_vec3_t least_dir;
     support_sample_t least_sample[2]; /* of least_dir */

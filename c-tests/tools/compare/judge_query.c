@@ -349,6 +349,7 @@ void judge_query(const compare_t *compare, const query_t *q, const answer_t *own
     if (!s.samples)
         return;
     s.samples->least = HUGE_VAL;
+    ccdVec3Set(&s.samples->first_dir, 1, 0, 0); /* of calls that ask for none */
     count_add(&c->sampled, 1);
     judgement_t end = THREW;
     if (request_answers(compare, &s, own) == 0) {

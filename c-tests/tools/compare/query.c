@@ -166,10 +166,8 @@ static void recording_first_dir(const void *obj1, const void *obj2, ccd_vec3_t *
     const request_t *r = ((const object_t *)obj1)->request;
     const int a = ((const object_t *)obj1)->which, b = ((const object_t *)obj2)->which;
     r->q->ccd->first_dir(r->q->obj[a], r->q->obj[b], dir);
-    if (r->samples) {
+    if (r->samples)
         r->samples->first_dir = *dir;
-        r->samples->has_first_dir = 1;
-    }
 }
 
 static void along_x(const void *obj1, const void *obj2, ccd_vec3_t *dir)
