@@ -70,12 +70,6 @@ impl Output {
         let counters = keys.split(' ').map(|key| (key, self.value(key)));
         counters.filter(|(_, n)| *n != 0.0).map(|(key, n)| format!("{}: {key} {n}", self.method)).collect()
     }
-
-    /// Returns the lines about wrong results, `wrong: …`.
-    pub fn wrong(&self) -> Vec<String> {
-        let is_wrong = |line: &&str| line.split(' ').next().is_some_and(|word| word.ends_with(':'));
-        self.text.lines().filter(is_wrong).map(String::from).collect()
-    }
 }
 
 /// A program on one of the libraries.
@@ -191,11 +185,4 @@ pub fn fcl_distance() -> [Method; 3] {
     let library = build.join("lib/libwarmccd-fcl.so");
     let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
     [theirs, ours, preloaded.preload(library)]
-}
-
-/// Returns the same with every query judged on this library, and none on libccd.
-pub fn ours_judged(program: Program) -> [Method; 2] {
-    let [_, ours] = compared(program.clone(), "1");
-    let theirs = program.link(Link::System).build();
-    [Method::libccd("libccd", theirs), ours]
 }

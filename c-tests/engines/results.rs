@@ -6,7 +6,7 @@
 // Each driver uses a part. Comparisons are negated so that NaN counts as a failure.
 #![allow(dead_code, clippy::neg_cmp_op_on_partial_ord)]
 
-use super::programs::{Method, Output, run_all};
+use super::programs::Output;
 
 /// The largest share of a simulation's depths that are more than 1 % too deep, by a local minimum or a search
 /// that stopped early.
@@ -35,38 +35,29 @@ pub fn collide_failures([theirs, ours]: &[Output; 2]) -> Vec<String> {
 
 // --- whole programs -------------------------------------------------------------
 
-/// A scene on both libraries, from several slightly different starts.
-pub struct Simulation {
-    pub scene: &'static str,
-    pub steps: usize,
-    /// On libccd and on this library, by start.
-    pub runs: [Vec<Output>; 2],
-    pub failures: Vec<String>,
-}
-
-/// Runs and judges a scene from starts 1, 2, …, `starts`; `arguments` are those after SEED and STEPS.
-pub fn simulate(
-    scene: &'static str,
-    methods: &[Method; 2],
-    starts: usize,
-    steps: usize,
-    arguments: &str,
-) -> Simulation {
-    let mut runs = [Vec::new(), Vec::new()];
-    for seed in 1..=starts {
-        eprintln!("{scene}: start {seed} of {starts}");
-        for (runs, output) in runs.iter_mut().zip(run_all(methods, &format!("{seed} {steps} {arguments}"))) {
-            runs.push(output);
-        }
-    }
-    let ours = &runs[1];
+/// Returns why the answers to a program's queries on this library, in all its runs, are worse than allowed.
+pub fn answer_failures(ours: &[Output]) -> Vec<String> {
     let forbidden = format!("own.slanted {FORBIDDEN}");
     let mut failures: Vec<String> = ours.iter().flat_map(|run| run.nonzero(&forbidden)).collect();
     let [deep, judged] = ["own.deep", "own.queries"].map(|key| values(ours, key).iter().sum::<f64>());
     if !(deep <= MAX_DEEP_SHARE * judged) {
         failures.push(format!("{deep} of {judged} depths too deep"));
     }
-    Simulation { scene, steps, runs, failures }
+    failures
+}
+
+/// Returns the same of `ode_pile`, whose bodies stay in their pen and whose contacts are valid; energy gained, J, and the
+/// deepest contact, metres, are at most these.
+pub fn pile_failures(ours: &[Output], gained: f64, deepest: f64) -> Vec<String> {
+    let mut failures = answer_failures(ours);
+    failures.extend(ours.iter().flat_map(|run| run.nonzero("pile.escaped pile.bad")));
+    for (key, bound) in [("pile.gained", gained), ("pile.deepest", deepest)] {
+        let most = most(ours, key);
+        if !(most <= bound) {
+            failures.push(format!("{key} {most}, at most {bound} expected"));
+        }
+    }
+    failures
 }
 
 /// Returns the values of a counter in ascending order.
@@ -84,20 +75,4 @@ pub fn median(runs: &[Output], key: &str) -> f64 {
 /// Returns the largest value of a counter; NaN if one is.
 pub fn most(runs: &[Output], key: &str) -> f64 {
     values(runs, key).last().copied().unwrap_or(f64::NAN)
-}
-
-impl Simulation {
-    /// Judges the pile of `ode_pile` on this library: every body is in its pen, every contact is one; energy gained, J, and
-    /// the deepest contact, metres, are at most these.
-    pub fn judge_pile(mut self, gained: f64, deepest: f64) -> Self {
-        let ours = &self.runs[1];
-        self.failures.extend(ours.iter().flat_map(|run| run.nonzero("pile.escaped pile.bad")));
-        for (key, bound) in [("pile.gained", gained), ("pile.deepest", deepest)] {
-            let most = most(ours, key);
-            if !(most <= bound) {
-                self.failures.push(format!("{key} {most}, at most {bound} expected"));
-            }
-        }
-        self
-    }
 }

@@ -11,8 +11,7 @@ mod programs;
 mod results;
 
 use crate::harness::{Link, Precision, library};
-use programs::{Method, Output, compared, fcl_distance, ours_judged, program, run_all};
-use results::simulate;
+use programs::{Method, Output, compared, fcl_distance, program, run_all};
 
 fn assert_right(outputs: &[Output; 2]) {
     let failures = results::collide_failures(outputs);
@@ -60,9 +59,9 @@ fn ode_collide() {
 /// Towers on the one contact a pair that ODE takes from libccd, and a tower whose hulls just touch.
 #[test]
 fn towers_on_one_contact_a_pair() {
-    let methods = ours_judged(program("ode_pile.c"));
-    for arguments in ["20 stack", "6 tower"] {
-        let towers = simulate("ODE, towers", &methods, 1, 1500, arguments).judge_pile(1.0, 5e-3);
-        assert!(towers.failures.is_empty(), "{}", towers.failures.join("\n"));
+    let [_, ours] = compared(program("ode_pile.c"), "1");
+    for arguments in ["1 1500 20 stack", "1 1500 6 tower"] {
+        let failures = results::pile_failures(&[ours.run(arguments)], 1.0, 5e-3);
+        assert!(failures.is_empty(), "{arguments}: {}", failures.join("\n"));
     }
 }

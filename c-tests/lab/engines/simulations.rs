@@ -21,7 +21,7 @@ fn fcl_signed_distance() {
         let all = |keys: &str| keys.split(' ').map(|key| format!("{set}.{key}")).collect::<Vec<_>>().join(" ");
         assert!(preloaded.value(&all("queries")) >= 100.0, "{set}");
         let failures = preloaded.nonzero(&all("threw endless wrong outside"));
-        assert!(failures.is_empty(), "{set}: {failures:?}\n{}", preloaded.wrong().join("\n"));
+        assert!(failures.is_empty(), "{set}: {failures:?}\n{}", preloaded.text);
         for key in ["threw", "endless", "wrong", "outside"].map(all) {
             assert!(ours.value(&key) <= theirs.value(&key), "{key}\n{}", ours.text);
         }

@@ -5,7 +5,7 @@
 
 use super::consumers::{self, CONSUMERS};
 use super::programs::{Method, Output, compared, on_both, program, run_all};
-use super::results::{Simulation, median, most, values};
+use super::results::{median, most, values};
 use crate::pages::markdown;
 
 // --- single queries -------------------------------------------------------------
@@ -121,6 +121,32 @@ pub fn step_table(rounds: usize, starts: usize) -> String {
         vec![title.to_owned(), format!("{theirs:.3}"), format!("{ours:.3}"), format!("{:.2}", ours / theirs)]
     };
     markdown("program|libccd, ms a step|here|ratio", CONSUMERS.map(line))
+}
+
+/// A scene on both libraries, from several slightly different starts.
+pub struct Simulation {
+    pub scene: &'static str,
+    pub steps: usize,
+    /// On libccd and on this library, by start.
+    pub runs: [Vec<Output>; 2],
+}
+
+/// Runs a scene from starts 1, 2, …, `starts`; `arguments` are those after SEED and STEPS.
+pub fn simulate(
+    scene: &'static str,
+    methods: &[Method; 2],
+    starts: usize,
+    steps: usize,
+    arguments: &str,
+) -> Simulation {
+    let mut runs = [Vec::new(), Vec::new()];
+    for seed in 1..=starts {
+        eprintln!("{scene}: start {seed} of {starts}");
+        for (runs, output) in runs.iter_mut().zip(run_all(methods, &format!("{seed} {steps} {arguments}"))) {
+            runs.push(output);
+        }
+    }
+    Simulation { scene, steps, runs }
 }
 
 /// Returns a row for each simulation, both libraries in each cell; the energy gained is the median of the starts.
