@@ -104,8 +104,6 @@ static void check_recording(const char *path, size_t step)
         }
     }
     printf("%zu recorded pairs\n", k / step);
-    free(body);
-    recording_free(&r);
 }
 
 int main(int argc, char **argv)

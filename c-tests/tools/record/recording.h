@@ -16,46 +16,32 @@ typedef struct {
     double lower, upper; /* bounds on the signed depth: positive is penetration, negative the distance apart */
 } recording_pair_t;
 
+/* Lives as long as the program. */
 typedef struct {
     uint32_t shapes, bodies, frames, pairs;
     shape_t *shape;        /* in their own frames */
-    ccd_real_t **vertices; /* of each shape */
     uint32_t *shape_of;    /* by body */
     float (*pose)[7];      /* of all bodies, frame by frame: position, quaternion */
     uint32_t *frame_pairs; /* number of pairs of each frame */
     recording_pair_t *pair; /* frame by frame */
 } recording_t;
 
-static inline void recording_free(recording_t *r)
-{
-    for (uint32_t i = 0; r->vertices && i < r->shapes; i++)
-        free(r->vertices[i]);
-    free(r->shape);
-    free(r->vertices);
-    free(r->shape_of);
-    free(r->pose);
-    free(r->frame_pairs);
-    free(r->pair);
-    memset(r, 0, sizeof *r);
-}
-
 /* Reads n items. Returns whether the file has them. */
 static inline int recording_items(FILE *file, void *to, size_t size, size_t n) { return fread(to, size, n, file) == n; }
 
-static inline int recording_shape(FILE *file, recording_t *r, uint32_t i)
+static inline int recording_shape(FILE *file, shape_t *shape)
 {
     uint32_t kind[2];
     double p[3], x;
-    if (!recording_items(file, kind, 4, 2) || !recording_items(file, p, 8, 3) || kind[0] > SHAPE_POLYTOPE ||
-        kind[1] > 100000 || !(r->vertices[i] = (ccd_real_t *)malloc((3 * (size_t)kind[1] + 1) * sizeof(ccd_real_t))))
+    if (!recording_items(file, kind, 4, 2) || !recording_items(file, p, 8, 3) || kind[0] > SHAPE_POLYTOPE)
         return 0;
+    ccd_real_t *vertices = (ccd_real_t *)malloc((3 * (size_t)kind[1] + 1) * sizeof(ccd_real_t));
     for (uint32_t j = 0; j < 3 * kind[1]; j++) {
-        if (!recording_items(file, &x, 8, 1))
+        if (!vertices || !recording_items(file, &x, 8, 1))
             return 0;
-        r->vertices[i][j] = (ccd_real_t)x;
+        vertices[j] = (ccd_real_t)x;
     }
-    r->shape[i] = kind[0] == SHAPE_POLYTOPE ? shape_polytope(r->vertices[i], (int)kind[1])
-                                            : shape_make((int)kind[0], p[0], p[1], p[2]);
+    *shape = kind[0] == SHAPE_POLYTOPE ? shape_polytope(vertices, (int)kind[1]) : shape_make((int)kind[0], p[0], p[1], p[2]);
     return 1;
 }
 
@@ -65,22 +51,19 @@ static inline int recording_parse(FILE *file, recording_t *r)
     uint32_t head[4], k = 0;
     if (!recording_items(file, magic, 8, 1) || memcmp(magic, "CCDREC01", 8) != 0 || !recording_items(file, head, 4, 4))
         return 0;
-    if (!head[0] || head[0] > 4096 || !head[1] || head[1] > 4096 || head[2] > 100000 || head[3] > 100000000)
-        return 0;
     r->shapes = head[0];
     r->bodies = head[1];
     r->frames = head[2];
     r->pairs = head[3];
     r->shape = (shape_t *)calloc(r->shapes, sizeof *r->shape);
-    r->vertices = (ccd_real_t **)calloc(r->shapes, sizeof *r->vertices);
     r->shape_of = (uint32_t *)calloc(r->bodies, sizeof *r->shape_of);
-    r->pose = (float (*)[7])calloc((size_t)r->frames * r->bodies + 1, sizeof *r->pose);
-    r->frame_pairs = (uint32_t *)calloc((size_t)r->frames + 1, sizeof *r->frame_pairs);
-    r->pair = (recording_pair_t *)calloc((size_t)r->pairs + 1, sizeof *r->pair);
-    if (!r->shape || !r->vertices || !r->shape_of || !r->pose || !r->frame_pairs || !r->pair)
+    r->pose = (float (*)[7])calloc((size_t)r->frames * r->bodies, sizeof *r->pose);
+    r->frame_pairs = (uint32_t *)calloc(r->frames, sizeof *r->frame_pairs);
+    r->pair = (recording_pair_t *)calloc(r->pairs, sizeof *r->pair);
+    if (!r->shape || !r->shape_of || !r->pose || !r->frame_pairs || !r->pair)
         return 0;
     for (uint32_t i = 0; i < r->shapes; i++)
-        if (!recording_shape(file, r, i))
+        if (!recording_shape(file, &r->shape[i]))
             return 0;
     for (uint32_t i = 0; i < r->bodies; i++)
         if (!recording_items(file, &r->shape_of[i], 4, 1) || r->shape_of[i] >= r->shapes)
@@ -100,11 +83,10 @@ static inline int recording_parse(FILE *file, recording_t *r)
     return k == r->pairs && fgetc(file) == EOF;
 }
 
-/* Returns 0, or -1 if the file is not a whole recording; recording_free it either way. */
+/* Returns 0, or -1 if the file is not a whole recording. */
 static inline int recording_read(const char *path, recording_t *r)
 {
     FILE *file = fopen(path, "rb");
-    memset(r, 0, sizeof *r);
     if (!file)
         return -1;
     const int is_whole = recording_parse(file, r);

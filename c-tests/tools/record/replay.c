@@ -221,8 +221,5 @@ int main(int argc, char **argv)
         return 2;
     }
     shape_t *body = (shape_t *)malloc(r.bodies * sizeof *body);
-    const int failed = !body || replay(&r, passes, body);
-    free(body);
-    recording_free(&r);
-    return failed;
+    return !body || replay(&r, passes, body);
 }
