@@ -31,11 +31,15 @@ static void write_xml(const char *format, ...)
 static void write_model(int bodies)
 {
     static const char *const geoms[] = {
-        "type=\"ellipsoid\" size=\"0.06 0.09 0.12\"", "type=\"cylinder\" size=\"0.08 0.1\"", "type=\"capsule\" size=\"0.06 0.07\"",
-        "type=\"mesh\" mesh=\"hull\"",                "type=\"box\" size=\"0.06 0.08 0.1\"",
+        "type=\"ellipsoid\" size=\"0.06 0.09 0.12\"",
+        "type=\"cylinder\" size=\"0.08 0.1\"",
+        "type=\"capsule\" size=\"0.06 0.07\"",
+        "type=\"mesh\" mesh=\"hull\"",
+        "type=\"box\" size=\"0.06 0.08 0.1\"",
     };
     write_xml("<mujoco><option timestep=\"0.004\"/><size nconmax=\"600\" njmax=\"2400\"/><asset>"
-              "<mesh name=\"hull\" vertex=\".1 0 0 -.1 .02 0 0 .08 .01 .01 -.08 0 0 .01 .12 0 0 -.12 .06 .05 .06 -.06 -.05 -.07\"/>"
+              "<mesh name=\"hull\" vertex=\".1 0 0 -.1 .02 0 0 .08 .01 .01 -.08 0 0 .01 .12 0 0 -.12 "
+              ".06 .05 .06 -.06 -.05 -.07\"/>"
               "</asset><worldbody><geom type=\"plane\" size=\"2 2 .1\"/>");
     for (int i = 0; i < 4; i++) {
         const int sign = i % 2 ? 1 : -1, x = i < 2 ? sign : 0, y = i < 2 ? 0 : sign;
@@ -45,8 +49,8 @@ static void write_model(int bodies)
         double q[4];
         uniform_rotation(q);
         write_xml("<body pos=\"%.5f %.5f %.5f\" quat=\"%.6f %.6f %.6f %.6f\"><freejoint/><geom %s/></body>",
-                  0.34 * (i % 3 - 1) + uniform(-.02, .02), 0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02), 0.4 + 0.33 * (i / 9), q[0],
-                  q[1], q[2], q[3], geoms[i % 5]);
+                  0.34 * (i % 3 - 1) + uniform(-.02, .02), 0.34 * (i / 3 % 3 - 1) + uniform(-.02, .02), 0.4 + 0.33 * (i / 9),
+                  q[0], q[1], q[2], q[3], geoms[i % 5]);
     }
     write_xml("</worldbody></mujoco>");
 }

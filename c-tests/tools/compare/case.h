@@ -57,7 +57,8 @@ static inline void case_first_dir(const void *obj1, const void *obj2, ccd_vec3_t
 }
 
 /* Makes objects and settings of a case. */
-static inline void case_prepare(const samples_t *s, unsigned long max_iterations, double tolerance, case_object_t object[2], ccd_t *ccd)
+static inline void case_prepare(const samples_t *s, unsigned long max_iterations, double tolerance, case_object_t object[2],
+                                ccd_t *ccd)
 {
     memset(ccd, 0, sizeof *ccd);
     for (int k = 0; k < 2; k++)
