@@ -22,7 +22,7 @@ mod harness;
 #[path = "../tests/stability/programs.rs"]
 mod programs;
 
-use harness::{Executable, Link, Program};
+use harness::{Executable, Program};
 use programs::{determinism, program};
 
 /// Runs a program in the terminal with the given arguments, then the defaults of the others.
@@ -49,7 +49,7 @@ fn truth(given: &[String]) {
     files.sort();
     files.insert(0, folder.join("tools/record/contacts.bin").display().to_string());
     let files: Vec<&str> = files.iter().map(String::as_str).collect();
-    let program = Program::new("lab/truth.c").strict().flag("-DOURS_ALONE").link(Link::Static).build();
+    let program = Program::new("lab/truth.c").strict().flag("-DOURS_ALONE").link(harness::Link::Static).build();
     show(&program, given, &[&["100000", "1"], &files[..]].concat());
 }
 
