@@ -32,7 +32,7 @@ impl Settings {
 /// zero and costs no support points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Want {
-    /// True to request the contact position. It costs 2 to 4 support points, at most 8 for a face of
+    /// True to request the contact position. It costs 1 to 3 support points, at most 20 for faces of
     /// more than four corners, none if a state shows that nothing has moved. May evaluate one shape
     /// without the other.
     pub pos: bool,

@@ -165,8 +165,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
- * May call one support function without the other.
+ * Requests pos. Costs 1 to 3 support points on average, k for a face of k > 4 corners, of both
+ * objects where neither's face contains the other's; at most 20. May call one support function
+ * without the other.
  */
 #define CCD_WANT_POS 1
 

@@ -14,8 +14,9 @@ use crate::math::{Real, lower_to_real};
 use crate::solver::Solver;
 use crate::types::{Penetration, Status, Want};
 
-/// Requests pos. Costs 2 to 4 support points, at most 8 if a face has more than four corners.
-/// May call one support function without the other.
+/// Requests pos. Costs 1 to 3 support points on average, k for a face of k > 4 corners, of both
+/// objects where neither's face contains the other's; at most 20. May call one support function
+/// without the other.
 pub const CCD_WANT_POS: c_uint = 1;
 /// Requests point1 and point2, at no cost.
 pub const CCD_WANT_POINTS: c_uint = 2;
