@@ -12,7 +12,6 @@
 //! | `positions` | how far `pos` is from the objects (`tests/extension/pos.c`) | the share of two million hits: 1 |
 //! | `jumps` | how often `pos` jumps, by shape (`tests/extension/pos.c`) | steps, seed: 300000 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
-//! | `planar` | flat objects in a plane (`tests/extension/planar.c`) | pairs: 20000 |
 //! | `truth` | the truth (`truth.c`) against itself, the certified pairs and the recorded contacts | random pairs, step: 100000 1 |
 //! | `ledger` | the configurations where libccd is wrong | |
 //! | `determinism` | digests that `cmake/packages/cross.sh` compares between processors | |
@@ -64,7 +63,6 @@ fn main() {
         "states" => show(&elsewhere("extension/warm_states"), &given, &["400", "1000000"]),
         "positions" => show(&elsewhere("extension/pos"), &list("near"), &["", "1"]),
         "jumps" => show(&elsewhere("extension/pos"), &list("jumps"), &["", "300000", "1"]),
-        "planar" => show(&elsewhere("extension/planar"), &given, &["20000"]),
         "touches" => show(&elsewhere("contract/touches"), &given, &["200000"]),
         #[cfg(not(feature = "single"))]
         "truth" => truth(&given),
@@ -73,7 +71,7 @@ fn main() {
         "determinism" => show(&determinism(), &[], &["150"]),
         _ => {
             eprintln!(
-                "usage: campaigns rates|wide|states|planar|touches|positions|jumps|truth|ledger|determinism [ARGUMENT...]"
+                "usage: campaigns rates|wide|states|touches|positions|jumps|truth|ledger|determinism [ARGUMENT...]"
             );
             std::process::exit(2);
         }

@@ -24,7 +24,6 @@ run_programs! {
     cpp_wrapper_in_cpp20: program("tests/extension/wrapper.cpp").strict().flag("-std=c++20"), NO_ARGS;
     status_says_why_a_search_ended: program("tests/extension/status.c").strict(), NO_ARGS;
     results_from_every_kind_of_state: program("tests/extension/warm_states.c").strict(), [harness::rounds(400)];
-    flat_objects_in_a_plane: program("tests/extension/planar.c").strict(), [harness::rounds(300)];
     pos_is_the_center_of_pressure: program("tests/extension/pos.c").strict(), ["pressure", &one_in(8)];
     pos_is_near_both_objects: program("tests/extension/pos.c").strict(), ["near", "100"];
     pos_does_not_jump: program("tests/extension/pos.c").strict(), ["jumps", &harness::rounds(10000)];

@@ -125,7 +125,8 @@ static inline unsigned long call_limit(const entry_t *e)
 {
     if (e->is_libccd)
         return e->call == CALL_MPR ? 40000 : 4000;
-    return entry_is_mpr(e) ? 2 * 400 : 2 * 500;
+    const int is_portal = e->call == CALL_ALONG || e->call == CALL_PLANAR || e->call == CALL_INCREMENTAL;
+    return entry_is_mpr(e) || is_portal ? 2 * 400 : 2 * 500;
 }
 
 static unsigned wanted_outputs = CCD_WANT_ALL; /* CCD_WANT_ flags */
