@@ -12,6 +12,8 @@
 #include "polytope.h"
 #include "harness/shapes.h"
 
+#include <stddef.h>
+
 /* Memory for the outputs of any call. */
 typedef struct {
     ccd_penetration_t penetration;
@@ -20,6 +22,18 @@ typedef struct {
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
 } results_t;
+
+/* Returns whether all outputs are the same bits, without padding. */
+static inline int same_results(const results_t *x, const results_t *y)
+{
+    int is_same = same_bits(&x->penetration, &y->penetration, offsetof(ccd_penetration_t, status) + sizeof x->penetration.status)
+        && same_bits(&x->distance, &y->distance, offsetof(ccd_distance_t, status) + sizeof x->distance.status)
+        && same_bits(&x->depth, &y->depth, sizeof x->depth) && same_bits(&x->dir, &y->dir, sizeof x->dir)
+        && same_bits(&x->pos, &y->pos, sizeof x->pos);
+    for (int i = 0; i < 4; i++)
+        is_same &= same_bits(&x->contacts[i], &y->contacts[i], offsetof(ccd_contact_t, id) + sizeof x->contacts[i].id);
+    return is_same;
+}
 
 /* The outputs that the calls have in common. */
 typedef struct {

@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Judges results (tests/stability/judge.h) from every kind of state: cold, of the same pair, flipped, of
- * another pair, any bytes, changed; with and without centers; of flat bodies in a plane too. Checks that every direction that a callback receives is unit, how many support
- * calls a state saves, and that it stays on its side.
+ * another pair, any bytes, changed; with and without centers; of flat bodies in a plane too. Checks that every direction
+ * that a callback receives is unit, how many support calls a state saves, and that it stays on its side.
  *
  *   warm_states [pairs a call, changed states] */
 

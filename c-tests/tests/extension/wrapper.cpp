@@ -141,18 +141,6 @@ static int call_in_cpp(int number, const A &a, const B &b, const ccd::Settings &
 
 /* --- the same bits as in C ---------------------------------------------------------------- */
 
-/* Returns whether all outputs are the same bits, without padding. */
-static bool same_results(const results_t &x, const results_t &y)
-{
-    bool same = same_bits(&x.penetration, &y.penetration, offsetof(ccd_penetration_t, status) + sizeof(int))
-        && same_bits(&x.distance, &y.distance, offsetof(ccd_distance_t, status) + sizeof(int))
-        && same_bits(&x.depth, &y.depth, sizeof x.depth) && same_bits(&x.dir, &y.dir, sizeof x.dir)
-        && same_bits(&x.pos, &y.pos, sizeof x.pos);
-    for (int i = 0; i < 4; i++)
-        same = same && same_bits(&x.contacts[i], &y.contacts[i], offsetof(ccd_contact_t, id) + sizeof x.contacts[i].id);
-    return same;
-}
-
 static int hits, misses;
 
 /* Makes every call on two bodies, which are these shapes of the C tests, in both languages. */
@@ -193,7 +181,7 @@ static void compare(const A &a, const B &b, const shape_t &shape1, const shape_t
             const int code = call_library(call.number, &shape1, &shape2, &c, &c_args);
             (code == call.miss ? misses : hits)++;
             CHECK(call_in_cpp(call.number, a, b, settings, &warm, args) == code, "%s: not %d", call.name, code);
-            CHECK(same_results(in_c, in_cpp), "%s: another result", call.name);
+            CHECK(same_results(&in_c, &in_cpp), "%s: another result", call.name);
             CHECK(same_bits(warm.get(), &c_warm, sizeof c_warm), "%s: another state", call.name);
             CHECK(same_bits(&cache, &c_cache, sizeof cache), "%s: another cache", call.name);
         }
