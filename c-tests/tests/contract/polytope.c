@@ -2,10 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Checks the polytope functions of the loaded library by random sequences of additions, deletions by
- * the user's inline functions, nearest elements set by the user, searches and recomputations. Each
- * step compares the polytope with a model: the elements in the order of their addition, and the
- * nearest one by libccd's rule for the distances in the elements. (point_distance.c checks the
- * distances themselves.) */
+ * the user's inline functions, nearest elements set by the user, searches and recomputations. After each
+ * step the polytope is compared with the elements in the order of their addition, and the nearest one by libccd's rule for
+ * the distances in the elements. (point_distance.c checks the distances themselves.) */
 
 #include "check.h"
 #include "harness/identity.h"
@@ -14,38 +13,27 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { MAX_ELEMENTS = 512, NONE = -1 };
+enum { MAX_ELEMENTS = 512 };
 
-/* Expected element. Elements are numbered in the order of their addition. */
-typedef struct {
-    int type;     /* 0: deleted */
-    int parts[3]; /* vertices of an edge, edges of a face */
-    int sides[2]; /* faces of an edge */
-    support_t v;
-} element_t;
+typedef union { pt_el_t el; pt_vertex_t vertex; pt_edge_t edge; pt_face_t face; } any_t;
 
-static element_t model[MAX_ELEMENTS];
+/* The elements in the order of their addition, and what does not change in them. */
+static struct {
+    any_t *at;
+    const void *parts[3]; /* vertices of an edge, edges of a face */
+    support_t v;          /* of a vertex */
+} elements[MAX_ELEMENTS];
 static int count;
 
 static int ours; /* this library, else libccd, whose distances are not checked */
 
 static pt_t pt;
-static pt_el_t *address[MAX_ELEMENTS]; /* the library's elements */
-static struct { int element; ccd_real_t dist; int type; } nearest; /* expected */
-
-/* Returns the number of an element; NONE for NULL. */
-static int index_of(const void *element)
-{
-    for (int i = 0; i < count; i++)
-        if (model[i].type != 0 && element == address[i])
-            return i;
-    return NONE;
-}
+static struct { const void *element; ccd_real_t dist; int type; } nearest; /* expected */
 
 /* Applies libccd's rule for the nearest element to one more element. */
-static void update_nearest(int element)
+static void update_nearest(const any_t *element)
 {
-    const pt_el_t *el = address[element];
+    const pt_el_t *el = &element->el;
     if (ccdEq(nearest.dist, el->dist) ? el->type < nearest.type : el->dist < nearest.dist) {
         nearest.element = element;
         nearest.dist = el->dist;
@@ -55,7 +43,7 @@ static void update_nearest(int element)
 
 static void reset_nearest(void)
 {
-    nearest.element = NONE;
+    nearest.element = NULL;
     nearest.dist = CCD_REAL_MAX;
     nearest.type = PT_FACE;
 }
@@ -68,8 +56,8 @@ static void check_list(const list_t *head, int type)
     const list_t *link = head->next;
     CHECK(link->prev == head && head->prev->next == head, "circular");
     for (int i = 0; i < count; i++) {
-        if (model[i].type == type) {
-            CHECK(link == &address[i]->list, "type %d, element %d in order", type, i);
+        if (elements[i].at->el.type == type) {
+            CHECK(link == &elements[i].at->el.list, "type %d, element %d in order", type, i);
             if (link == head)
                 return;
             CHECK(link->next->prev == link, "linked both ways");
@@ -79,24 +67,36 @@ static void check_list(const list_t *head, int type)
     CHECK(link == head, "nothing more of type %d", type);
 }
 
+/* Checks a vertex, and that its edges are linked, oldest first, each by the link of its end at this vertex. */
 static void check_vertex(int i)
 {
-    pt_vertex_t *vertex = (pt_vertex_t *)address[i];
+    const pt_vertex_t *vertex = &elements[i].at->vertex;
+    const ccd_vec3_t *point = &elements[i].v.v;
     const list_t *link = vertex->edges.next;
-    CHECK(same_bits(&vertex->v, &model[i].v, sizeof vertex->v), "vertex %d keeps its point", i);
-    CHECK(same_bits(&vertex->el.witness, &model[i].v.v, sizeof vertex->el.witness), "a vertex's witness is v");
-    CHECK(vertex->el.dist == ccdVec3Len2(&model[i].v.v), "a vertex's distance is squared");
-    /* Its edges, oldest first, each by the link of its end at this vertex. */
-    for (int k = 0; k < count; k++) {
-        for (int end = 0; end < 2; end++) {
-            if (model[k].type == PT_EDGE && model[k].parts[end] == i) {
-                pt_edge_t *edge = (pt_edge_t *)address[k];
-                CHECK(link == &edge->vertex_list[end], "edge %d in the list of vertex %d", k, i);
+    CHECK(same_bits(&vertex->v, &elements[i].v, sizeof vertex->v), "vertex %d keeps its point", i);
+    CHECK(same_bits(&vertex->el.witness, point, sizeof *point), "a vertex's witness is v");
+    CHECK(vertex->el.dist == ccdVec3Len2(point), "a vertex's distance is squared");
+    for (int k = 0; k < count; k++)
+        for (int end = 0; end < 2; end++)
+            if (elements[k].at->el.type == PT_EDGE && elements[k].parts[end] == vertex) {
+                CHECK(link == &elements[k].at->edge.vertex_list[end], "edge %d in the list of vertex %d", k, i);
                 link = link->next;
             }
-        }
-    }
     CHECK(link == &vertex->edges, "vertex %d has no other edge", i);
+}
+
+/* Checks the ends of an edge, and its faces, oldest first. */
+static void check_edge(int i)
+{
+    const pt_edge_t *edge = &elements[i].at->edge;
+    const void *faces[2] = {NULL, NULL};
+    int sides = 0;
+    for (int k = 0; k < count; k++)
+        for (int side = 0; side < 3; side++)
+            if (sides < 2 && elements[k].at->el.type == PT_FACE && elements[k].parts[side] == edge)
+                faces[sides++] = elements[k].at;
+    for (int k = 0; k < 2; k++)
+        CHECK(edge->vertex[k] == elements[i].parts[k] && edge->faces[k] == faces[k], "edge %d's vertices and faces", i);
 }
 
 static void check_polytope(void)
@@ -104,44 +104,46 @@ static void check_polytope(void)
     check_list(&pt.vertices, PT_VERTEX);
     check_list(&pt.edges, PT_EDGE);
     check_list(&pt.faces, PT_FACE);
-    for (int i = 0; i < count; i++) {
-        if (model[i].type == 0)
-            continue;
-        CHECK(address[i]->type == model[i].type, "type");
-        if (model[i].type == PT_VERTEX) {
-            check_vertex(i);
-        } else if (model[i].type == PT_EDGE) {
-            const pt_edge_t *edge = (const pt_edge_t *)address[i];
-            for (int k = 0; k < 2; k++) {
-                CHECK(index_of(edge->vertex[k]) == model[i].parts[k], "edge %d's vertices", i);
-                CHECK(index_of(edge->faces[k]) == model[i].sides[k], "edge %d's faces", i);
-            }
-        } else {
-            const pt_face_t *face = (const pt_face_t *)address[i];
+    for (int i = 0; i < count; i++)
+        switch (elements[i].at->el.type) {
+        case PT_VERTEX: check_vertex(i); break;
+        case PT_EDGE: check_edge(i); break;
+        default:
             for (int k = 0; k < 3; k++)
-                CHECK(index_of(face->edge[k]) == model[i].parts[k], "face %d's edges", i);
+                CHECK(elements[i].at->face.edge[k] == elements[i].parts[k], "face %d's edges", i);
         }
-    }
-    CHECK(index_of(pt.nearest) == nearest.element, "nearest is %d, expected %d", index_of(pt.nearest), nearest.element);
+    CHECK((const void *)pt.nearest == nearest.element, "nearest");
     CHECK(pt.nearest_dist == nearest.dist && pt.nearest_type == nearest.type, "nearest_dist, nearest_type");
 }
 
 /* --- steps ----------------------------------------------------------------- */
 
+/* Returns the number of a random element of the type; -1 if there is none. */
 static int pick(int type)
 {
-    int start = count == 0 ? 0 : random_below(count), i;
-    for (i = 0; i < count; i++)
-        if (model[(start + i) % count].type == type)
+    const int start = count == 0 ? 0 : random_below(count);
+    for (int i = 0; i < count; i++)
+        if (elements[(start + i) % count].at->el.type == type)
             return (start + i) % count;
-    return NONE;
+    return -1;
 }
 
-static void added(int type)
+/* Returns a random element of the type, or NULL. */
+static any_t *pick_element(int type)
 {
-    model[count].type = type;
-    update_nearest(count);
-    count++;
+    const int i = pick(type);
+    return i < 0 ? NULL : elements[i].at;
+}
+
+/* Stores an element that was added, with its parts. */
+static any_t *added(void *element, int type, const void *a, const void *b, const void *c)
+{
+    const void *parts[3] = {a, b, c};
+    elements[count].at = (any_t *)element;
+    memcpy(elements[count].parts, parts, sizeof parts);
+    CHECK(elements[count].at->el.type == type, "type");
+    update_nearest(elements[count].at);
+    return elements[count++].at;
 }
 
 static void add_vertex(void)
@@ -153,143 +155,114 @@ static void add_vertex(void)
     if (random_below(4) == 0)
         for (int k = 0; k < 3; k++)
             s.v.v[k] = (ccd_real_t)(random_below(3) - 1);
-    model[count].v = s;
-    address[count] = (pt_el_t *)ccdPtAddVertex(&pt, &s);
-    added(PT_VERTEX);
+    elements[count].v = s;
+    added(ccdPtAddVertex(&pt, &s), PT_VERTEX, NULL, NULL, NULL);
 }
 
-static int add_edge(int a, int b)
+static any_t *add_edge(any_t *a, any_t *b)
 {
-    model[count].parts[0] = a;
-    model[count].parts[1] = b;
-    model[count].sides[0] = model[count].sides[1] = NONE;
-    address[count] = (pt_el_t *)ccdPtAddEdge(&pt, (pt_vertex_t *)address[a], (pt_vertex_t *)address[b]);
-    added(PT_EDGE);
-    return count - 1;
+    return added(ccdPtAddEdge(&pt, &a->vertex, &b->vertex), PT_EDGE, a, b, NULL);
 }
 
 /* Returns the edge between two vertices with fewer than two faces, or a new one. */
-static int edge_between(int a, int b)
+static any_t *edge_between(any_t *a, any_t *b)
 {
-    for (int i = 0; i < count; i++)
-        if (model[i].type == PT_EDGE && model[i].sides[1] == NONE
-            && ((model[i].parts[0] == a && model[i].parts[1] == b) || (model[i].parts[0] == b && model[i].parts[1] == a)))
-            return i;
+    for (int i = 0; i < count; i++) {
+        const void *const *ends = elements[i].parts;
+        if (elements[i].at->el.type == PT_EDGE && elements[i].at->edge.faces[1] == NULL
+            && ((ends[0] == a && ends[1] == b) || (ends[0] == b && ends[1] == a)))
+            return elements[i].at;
+    }
     return random_below(2) ? add_edge(a, b) : add_edge(b, a);
 }
 
 static void add_face(void)
 {
-    int a = pick(PT_VERTEX), b = pick(PT_VERTEX), c = pick(PT_VERTEX), k;
-    int edge[3];
-    if (a == NONE || a == b || b == c || c == a || count > MAX_ELEMENTS - 8)
+    any_t *a = pick_element(PT_VERTEX), *b = pick_element(PT_VERTEX), *c = pick_element(PT_VERTEX), *ab, *bc, *ca;
+    if (a == NULL || a == b || b == c || c == a)
         return;
-    edge[0] = edge_between(a, b);
-    edge[1] = edge_between(b, c);
-    edge[2] = edge_between(c, a);
-    address[count] = (pt_el_t *)ccdPtAddFace(&pt, (pt_edge_t *)address[edge[0]], (pt_edge_t *)address[edge[1]],
-                                             (pt_edge_t *)address[edge[2]]);
-    for (k = 0; k < 3; k++) {
-        model[count].parts[k] = edge[k];
-        model[edge[k]].sides[model[edge[k]].sides[0] != NONE] = count;
-    }
-    added(PT_FACE);
-}
-
-static void deleted(int i)
-{
-    model[i].type = 0;
-    if (nearest.element == i)
-        nearest.element = NONE;
-}
-
-static void delete_face(int i)
-{
-    pt_delete_face(&pt, (pt_face_t *)address[i]);
-    for (int k = 0; k < 3; k++) {
-        int *sides = model[model[i].parts[k]].sides;
-        if (sides[0] == i)
-            sides[0] = sides[1];
-        sides[1] = NONE;
-    }
-    deleted(i);
+    ab = edge_between(a, b);
+    bc = edge_between(b, c);
+    ca = edge_between(c, a);
+    added(ccdPtAddFace(&pt, &ab->edge, &bc->edge, &ca->edge), PT_FACE, ab, bc, ca);
 }
 
 static void delete_any(void)
 {
-    int type = 1 + random_below(3), i = pick(type);
-    if (i == NONE)
+    const int type = 1 + random_below(3), i = pick(type);
+    any_t *element = i < 0 ? NULL : elements[i].at;
+    if (element == NULL || (type == PT_EDGE && !pt_edge_is_free(&element->edge))
+        || (type == PT_VERTEX && !pt_vertex_is_free(&element->vertex)))
         return;
-    if (type == PT_FACE) {
-        delete_face(i);
-    } else if (type == PT_EDGE && pt_edge_is_free((pt_edge_t *)address[i])) {
-        pt_delete_edge(&pt, (pt_edge_t *)address[i]);
-        deleted(i);
-    } else if (type == PT_VERTEX && pt_vertex_is_free((pt_vertex_t *)address[i])) {
-        pt_delete_vertex(&pt, (pt_vertex_t *)address[i]);
-        deleted(i);
-    }
+    if (nearest.element == element)
+        nearest.element = NULL;
+    if (type == PT_FACE)
+        pt_delete_face(&pt, &element->face);
+    else if (type == PT_EDGE)
+        pt_delete_edge(&pt, &element->edge);
+    else
+        pt_delete_vertex(&pt, &element->vertex);
+    memmove(&elements[i], &elements[i + 1], (size_t)(--count - i) * sizeof *elements);
 }
 
 /* Sets the nearest element, as FCL does. */
 static void set_nearest(void)
 {
-    int i = pick(1 + random_below(3));
-    if (i == NONE)
+    any_t *element = pick_element(1 + random_below(3));
+    if (element == NULL)
         return;
-    pt.nearest = address[i];
-    nearest.element = i;
+    nearest.element = pt.nearest = &element->el;
     pt.nearest_dist = nearest.dist = (ccd_real_t)uniform(0, 1);
-    pt.nearest_type = nearest.type = address[i]->type;
+    pt.nearest_type = nearest.type = element->el.type;
 }
 
 static void search(void)
 {
     const pt_el_t *found = ccdPtNearest(&pt);
-    if (nearest.element == NONE) {
+    if (nearest.element == NULL) {
         reset_nearest();
         for (int type = PT_VERTEX; type <= PT_FACE; type++)
             for (int i = 0; i < count; i++)
-                if (model[i].type == type)
-                    update_nearest(i);
+                if (elements[i].at->el.type == type)
+                    update_nearest(elements[i].at);
     }
     CHECK(found == pt.nearest, "returns nearest");
 }
 
 /* Returns the squared distance of an edge or a triangle. */
-static double distance2(const element_t *e)
+static double distance2(const any_t *element)
 {
-    const element_t *one = e->type == PT_FACE ? &model[e->parts[0]] : e, *two = &model[e->parts[1]];
-    const ccd_vec3_t *a = &model[one->parts[0]].v.v, *b = &model[one->parts[1]].v.v, *c;
-    if (e->type == PT_EDGE)
+    const pt_edge_t *one = element->el.type == PT_FACE ? element->face.edge[0] : &element->edge, *two = element->face.edge[1];
+    const ccd_vec3_t *a = &one->vertex[0]->v.v, *b = &one->vertex[1]->v.v;
+    if (element->el.type == PT_EDGE)
         return (double)ccdVec3PointSegmentDist2(ccd_vec3_origin, a, b, NULL);
-    c = &model[two->parts[two->parts[0] == one->parts[0] || two->parts[0] == one->parts[1]]].v.v;
-    return (double)ccdVec3PointTriDist2(ccd_vec3_origin, a, b, c, NULL);
+    const int is_shared = two->vertex[0] == one->vertex[0] || two->vertex[0] == one->vertex[1];
+    return (double)ccdVec3PointTriDist2(ccd_vec3_origin, a, b, &two->vertex[is_shared]->v.v, NULL);
 }
 
 /* Moves a vertex and recomputes the distances. */
 static void recompute(void)
 {
-    int i = pick(PT_VERTEX), k;
-    if (i == NONE)
+    const int i = pick(PT_VERTEX);
+    if (i < 0)
         return;
-    model[i].v.v = random_vec3(1);
-    ((pt_vertex_t *)address[i])->v = model[i].v;
+    elements[i].v.v = random_vec3(1);
+    elements[i].at->vertex.v = elements[i].v;
     ccdPtRecomputeDistances(&pt);
-    for (k = 0; k < count; k++)
-        if (model[k].type > PT_VERTEX) {
-            /* libccd's value depends on the order of the corners, and on the request for a witness. */
-            const double dist2 = (double)address[k]->dist, off = sqrt(dist2) - sqrt(distance2(&model[k]));
-            CHECK(fabs(off) < 1e-7 || !ours, "a distance off by %g", off);
-            CHECK(dist2 == (double)ccdVec3Len2(&address[k]->witness) || !ours, "the witness's distance");
-        }
+    for (int k = 0; k < count; k++) {
+        /* libccd's value depends on the order of the corners, and on the request for a witness. */
+        const pt_el_t *el = &elements[k].at->el;
+        const double off = el->type == PT_VERTEX ? 0 : sqrt((double)el->dist) - sqrt(distance2(elements[k].at));
+        CHECK(fabs(off) < 1e-7 || !ours, "a distance off by %g", off);
+        CHECK(el->dist == ccdVec3Len2(&el->witness) || !ours, "the witness's distance");
+    }
 }
 
 static void reject_null(void)
 {
-    int v = pick(PT_VERTEX), e = pick(PT_EDGE);
-    pt_vertex_t *vertex = v == NONE ? NULL : (pt_vertex_t *)address[v];
-    pt_edge_t *edge = e == NONE ? NULL : (pt_edge_t *)address[e];
+    any_t *v = pick_element(PT_VERTEX), *e = pick_element(PT_EDGE);
+    pt_vertex_t *vertex = v ? &v->vertex : NULL;
+    pt_edge_t *edge = e ? &e->edge : NULL;
     CHECK(ccdPtAddEdge(&pt, NULL, vertex) == NULL, "NULL vertex");
     CHECK(ccdPtAddEdge(&pt, vertex, NULL) == NULL, "NULL vertex");
     CHECK(ccdPtAddFace(&pt, NULL, edge, edge) == NULL, "NULL edge");
@@ -297,16 +270,8 @@ static void reject_null(void)
     CHECK(ccdPtAddFace(&pt, edge, edge, NULL) == NULL, "NULL edge");
 }
 
-static size_t read_file(const char *name, char *text, size_t size)
-{
-    FILE *file = fopen(name, "r");
-    const size_t length = fread(text, 1, size, file);
-    fclose(file);
-    return length;
-}
-
-/* Prints the polytope's text for the driver, which compares both libraries. Checks that the text is appended to a
- * file and that vertices are numbered. */
+/* Prints the polytope's text for the driver, which compares both libraries. Checks that it is appended to a file, written
+ * to a stream, and that vertices are numbered. */
 static void dump(void)
 {
     static char text[1 << 17];
@@ -314,32 +279,29 @@ static void dump(void)
     char name[512];
     const char *directory = getenv("TMPDIR");
     snprintf(name, sizeof name, "%s/polytope-XXXXXX", directory ? directory : P_tmpdir);
-    const int file = mkstemp(name);
-    CHECK(file >= 0, "a temporary file");
-    close(file);
+    FILE *file = fdopen(mkstemp(name), "r+");
+    CHECK(file != NULL, "a temporary file");
     ccdPtDumpSVT(&pt, name);
-    size_t half = read_file(name, text, sizeof text);
-    fwrite(text, 1, half, stdout);
     ccdPtDumpSVT(&pt, name);
-    size_t length = read_file(name, text, sizeof text);
-    CHECK(length == 2 * half && memcmp(text, text + half, half) == 0, "appends");
-    FILE *stream = fopen(name, "w");
-    ccdPtDumpSVT2(&pt, stream);
-    fclose(stream);
-    length = read_file(name, text, sizeof text);
-    CHECK(length == half, "writes to a stream");
+    fseek(file, 0, SEEK_END);
+    ccdPtDumpSVT2(&pt, file);
+    rewind(file);
+    const size_t length = fread(text, 1, sizeof text, file), part = length / 3;
+    fclose(file);
     remove(name);
+    CHECK(part > 0 && length == 3 * part && memcmp(text, text + part, 2 * part) == 0, "three times the same text");
+    fwrite(text, 1, part, stdout);
     ccdPtDumpSVT(&pt, "/no such directory/polytope");
     for (int i = 0; i < count; i++)
-        if (model[i].type == PT_VERTEX)
-            CHECK(((pt_vertex_t *)address[i])->id == id++, "a vertex's id");
+        if (elements[i].at->el.type == PT_VERTEX)
+            CHECK(elements[i].at->vertex.id == id++, "a vertex's id");
 }
 
 static void add_any_edge(void)
 {
-    const int a = pick(PT_VERTEX), b = pick(PT_VERTEX);
+    any_t *a = pick_element(PT_VERTEX), *b = pick_element(PT_VERTEX);
     /* libccd's distance of an edge between equal points is NaN. */
-    if (a != b && !ccdVec3Eq(&model[a].v.v, &model[b].v.v))
+    if (a != b && !ccdVec3Eq(&a->vertex.v.v, &b->vertex.v.v))
         add_edge(a, b);
 }
 
