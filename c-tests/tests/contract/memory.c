@@ -8,7 +8,6 @@
  * all blocks, and without memory libccd's return -2 and leave their outputs unchanged. */
 
 #include "every_call.h"
-#include <stddef.h>
 
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t n, size_t size);
@@ -16,30 +15,19 @@ void *__libc_realloc(void *block, size_t size);
 void *__libc_memalign(size_t alignment, size_t size);
 void __libc_free(void *block);
 
-enum { MAX_BLOCKS = 4096 };
-static struct { void *block; size_t size; } live[MAX_BLOCKS];
-static int counting, live_count;
+static int counting, live; /* live: blocks that are not freed */
 static unsigned long allocations, fail_at;
-
-static void *add_block(void *block, size_t size)
-{
-    if (counting && block != NULL && live_count < MAX_BLOCKS) {
-        live[live_count].block = block;
-        live[live_count++].size = size;
-    }
-    return block;
-}
+static struct { void *block; size_t size; } last; /* the last one allocated */
 
 /* Counts an allocation; returns 0 where it shall fail. */
 static int count_allocation(void) { return !counting || ++allocations != fail_at; }
 
-static void remove_block(void *block)
+static void *add_block(void *block, size_t size)
 {
-    for (int i = 0; i < live_count && block != NULL; i++)
-        if (live[i].block == block) {
-            live[i] = live[--live_count];
-            return;
-        }
+    live += block != NULL;
+    last.block = block;
+    last.size = size;
+    return block;
 }
 
 void *malloc(size_t size) { return count_allocation() ? add_block(__libc_malloc(size), size) : NULL; }
@@ -49,15 +37,8 @@ void *realloc(void *block, size_t size)
 {
     if (!count_allocation())
         return NULL;
-    remove_block(block);
-    void *moved = __libc_realloc(block, size);
-    return add_block(moved, size);
-}
-
-int posix_memalign(void **block, size_t alignment, size_t size)
-{
-    *block = count_allocation() ? add_block(__libc_memalign(alignment, size), size) : NULL;
-    return *block == NULL ? 12 /* ENOMEM */ : 0;
+    live -= block != NULL;
+    return add_block(__libc_realloc(block, size), size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
@@ -65,9 +46,15 @@ void *aligned_alloc(size_t alignment, size_t size)
     return count_allocation() ? add_block(__libc_memalign(alignment, size), size) : NULL;
 }
 
+int posix_memalign(void **block, size_t alignment, size_t size)
+{
+    *block = aligned_alloc(alignment, size);
+    return *block == NULL ? 12 /* ENOMEM */ : 0;
+}
+
 void free(void *block)
 {
-    remove_block(block);
+    live -= block != NULL;
     __libc_free(block);
 }
 
@@ -75,9 +62,15 @@ void free(void *block)
 static void start_counting(unsigned long fail)
 {
     counting = 1;
-    live_count = 0;
+    live = 0;
     allocations = 0;
     fail_at = fail;
+}
+
+/* Checks that an element is one block, of this size. */
+static void check_block(const void *element, size_t size, int blocks)
+{
+    CHECK(live == blocks && last.block == element && last.size == size, "an element is a block of %d bytes", (int)size);
 }
 
 static void append(list_t *head, list_t *link)
@@ -102,24 +95,24 @@ static void check_elements(void)
     for (int i = 0; i < 4; i++) {
         s.v = random_vec3(1);
         v[i] = ccdPtAddVertex(&pt, &s);
-        CHECK(live_count == i + 1 && live[i].block == v[i] && live[i].size == sizeof *v[i], "a vertex is a block");
+        check_block(v[i], sizeof *v[i], i + 1);
     }
     for (int i = 0; i < 6; i++) {
         static const int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 1}, {3, 2}};
         e[i] = ccdPtAddEdge(&pt, v[ends[i][0]], v[ends[i][1]]);
-        CHECK(live_count == i + 5 && live[i + 4].block == e[i] && live[i + 4].size == sizeof *e[i], "an edge is a block");
+        check_block(e[i], sizeof *e[i], i + 5);
     }
     for (int i = 0; i < 4; i++) {
         static const int sides[4][3] = {{0, 1, 2}, {3, 4, 0}, {4, 5, 1}, {5, 3, 2}};
         f[i] = ccdPtAddFace(&pt, e[sides[i][0]], e[sides[i][1]], e[sides[i][2]]);
-        CHECK(live_count == i + 11 && live[i + 10].block == f[i] && live[i + 10].size == sizeof *f[i], "a face is a block");
+        check_block(f[i], sizeof *f[i], i + 11);
     }
 
     /* This program frees blocks of the library ... */
     pt_delete_face(&pt, f[1]);
     pt_delete_face(&pt, f[2]);
     pt_delete_edge(&pt, e[4]);
-    CHECK(live_count == 11, "freed by the program");
+    CHECK(live == 11, "freed by the program");
 
     /* ... and the library frees a block of this program. */
     e[4] = (pt_edge_t *)malloc(sizeof *e[4]);
@@ -130,13 +123,13 @@ static void check_elements(void)
     append(&v[3]->edges, &e[4]->vertex_list[0]);
     append(&v[1]->edges, &e[4]->vertex_list[1]);
     append(&pt.edges, &e[4]->el.list);
-    CHECK(live_count == 12, "an element of the program");
+    CHECK(live == 12, "an element of the program");
     allocations = 0;
     ccdPtRecomputeDistances(&pt);
     ccdPtNearest(&pt);
     CHECK(allocations == 0, "searching allocates nothing");
     ccdPtDestroy(&pt);
-    CHECK(live_count == 0, "%d blocks left after ccdPtDestroy", live_count);
+    CHECK(live == 0, "%d blocks left after ccdPtDestroy", live);
 
     /* A failed allocation returns NULL and changes nothing. */
     ccdPtInit(&pt);
@@ -173,7 +166,7 @@ static void check_queries(void)
             start_counting(0);
             int code = run(entry, &a, &b, &ccd, &out);
             CHECK(code == (overlapping ? entry->hit : entry->miss), "%s returned %d", entry->name, code);
-            CHECK(live_count == 0, "%s left %d blocks behind", entry->name, live_count);
+            CHECK(live == 0, "%s left %d blocks behind", entry->name, live);
             /* A distance allocates only for an overlap. */
             if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == CALL_DISTANCE))
                 CHECK(allocations == 0, "%s allocated %lu blocks", entry->name, allocations);
@@ -183,7 +176,7 @@ static void check_queries(void)
                 before = out;
                 start_counting(fail);
                 code = run(entry, &a, &b, &ccd, &out);
-                CHECK(live_count == 0, "%s without memory left %d blocks behind", entry->name, live_count);
+                CHECK(live == 0, "%s without memory left %d blocks behind", entry->name, live);
                 if (!(entry->traits & EXTENSION)) {
                     CHECK(code == -2, "%s without block %lu returned %d", entry->name, fail, code);
                     CHECK(same_bits(&out, &before, sizeof out), "%s without memory wrote outputs", entry->name);
