@@ -90,7 +90,7 @@ static void check_callbacks(const call_t *call, int round)
     const int equal_centers = round % 5 == 0, hit = equal_centers || round % 2;
     shape_t a, b;
     ccd_t ccd;
-    outputs_t out;
+    results_t out;
     random_pair(call, round % 2, &a, &b, &ccd);
     if (equal_centers) {
         memcpy(b.pos, a.pos, sizeof b.pos);
@@ -112,7 +112,7 @@ static void check_callbacks(const call_t *call, int round)
     ccd.center2 = ccd.center2 ? center2 : NULL;
     ccd.first_dir = ccd.first_dir ? first_dir : NULL;
     const int code = run_wanting(want, call, &a, &b, &ccd, &out);
-    CHECK(code == (hit ? call->hit : call->miss), "%s returned %d", call->name, code);
+    CHECK(is_right(call, code, &out, hit), "%s returned %d", call->name, code);
     /* Equal centers prove an overlap without a support point. */
     CHECK((seen.pairs > 0 || equal_centers) && !seen.expect_second, "%s: both support functions", call->name);
     CHECK(b.calls == seen.pairs && a.calls == seen.firsts && (seen.separately || a.calls == b.calls),

@@ -21,7 +21,18 @@ typedef struct {
     ccd_contact_t contacts[4];
     ccd_real_t depth;
     ccd_vec3_t dir, pos;
+    support_t support;
 } results_t;
+
+static inline void clear_results(results_t *r) { memset(r, 0x5a, sizeof *r); }
+
+/* Returns whether nothing was written to results that had been cleared. */
+static inline int are_clear(const results_t *r)
+{
+    results_t clear;
+    clear_results(&clear);
+    return same_bits(r, &clear, sizeof clear);
+}
 
 /* Returns whether all outputs are the same bits, without padding. */
 static inline int same_results(const results_t *x, const results_t *y)
@@ -29,18 +40,22 @@ static inline int same_results(const results_t *x, const results_t *y)
     int is_same = same_bits(&x->penetration, &y->penetration, offsetof(ccd_penetration_t, status) + sizeof x->penetration.status)
         && same_bits(&x->distance, &y->distance, offsetof(ccd_distance_t, status) + sizeof x->distance.status)
         && same_bits(&x->depth, &y->depth, sizeof x->depth) && same_bits(&x->dir, &y->dir, sizeof x->dir)
-        && same_bits(&x->pos, &y->pos, sizeof x->pos);
+        && same_bits(&x->pos, &y->pos, sizeof x->pos) && same_bits(&x->support, &y->support, sizeof x->support);
     for (int i = 0; i < 4; i++)
         is_same &= same_bits(&x->contacts[i], &y->contacts[i], offsetof(ccd_contact_t, id) + sizeof x->contacts[i].id);
     return is_same;
 }
 
-/* The outputs that the calls have in common. */
-typedef struct {
-    ccd_real_t depth;
-    ccd_vec3_t dir, pos, normal; /* normal: of the extension alone */
-    support_t support;
-} outputs_t;
+/* Returns whether a code is right for objects that overlap, or are apart: CCD_LIMIT is a hit except of a distance that is
+ * not negative, and ccdContacts returns contacts of both. */
+static inline int is_right(const call_t *call, int code, const results_t *results, int overlapping)
+{
+    if (call->kind == KIND_MANIFOLD)
+        return code >= 1;
+    if (call->bad == CCD_BAD_INPUT && code == CCD_LIMIT)
+        return overlapping == (call->kind != KIND_DISTANCE || results->distance.distance < 0);
+    return code == (overlapping ? call->hit : call->miss);
+}
 
 /* __ccdSupport as an entry like the others. */
 static const call_t support_entry = {"__ccdSupport", PAIR_CALL_COUNT, 0, 0, 0, 0, 0};
@@ -65,70 +80,32 @@ static inline call_args_t valid_arguments(const call_t *entry, results_t *result
     return args;
 }
 
-/* Copies the result of a call with a struct of its own, if it has one. Returns the code, CCD_LIMIT as a hit or,
- * where a distance is not negative, a miss. */
-static inline int store_result(const call_t *entry, int code, const results_t *results, outputs_t *out)
-{
-    const ccd_distance_t *d = &results->distance;
-    const ccd_penetration_t *p = &results->penetration;
-    if (entry->kind == KIND_DISTANCE) {
-        CHECK(code < CCD_MISS || (code == CCD_LIMIT) == (d->status != CCD_STATUS_CONVERGED), "code %d, status %d", code, d->status);
-        if (code == CCD_LIMIT)
-            code = d->distance < 0 ? CCD_HIT : CCD_MISS;
-        if (code != CCD_HIT)
-            return code;
-        out->depth = -d->distance;
-        out->dir = d->normal;
-        for (int i = 0; i < 3; i++)
-            out->pos.v[i] = (d->point1.v[i] + d->point2.v[i]) / 2;
-    } else if (entry->kind == KIND_PENETRATION || entry->kind == KIND_PENETRATION_ALONG) {
-        if (code != CCD_HIT && code != CCD_LIMIT)
-            return code;
-        CHECK((code == CCD_LIMIT) == (p->status != CCD_STATUS_CONVERGED), "%s: code %d, status %d", entry->name, code, p->status);
-        out->depth = p->depth;
-        out->dir = p->dir;
-        out->normal = p->normal;
-        out->pos = p->pos;
-        code = CCD_HIT;
-    }
-    return code;
-}
-
-/* Runs a call and requests the results `want`. A call of the extension runs from a cold state, and again from the
- * state that it left, for `out`. */
-static inline int run_wanting(unsigned want, const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+/* Runs a call and requests the results `want`; returns its code. A call of the extension runs from a cold state, and again
+ * from the state that it left, for `out`. */
+static inline int run_wanting(unsigned want, const call_t *entry, const void *a, const void *b, const ccd_t *ccd, results_t *out)
 {
     const ccd_vec3_t up = {{0, 1, 0}};
     ccd_manifold_cache_t cache;
-    results_t results;
     ccd_warm_t warm;
+    memset(&warm, 0, sizeof warm);
+    memset(&cache, 0, sizeof cache);
+    clear_results(out);
+    call_args_t args = valid_arguments(entry, out);
+    args.warm = &warm;
+    args.cache = &cache;
+    args.want = want;
+    args.pos = want & CCD_WANT_POS ? args.pos : NULL;
     if (entry->number == PAIR_CALL_COUNT) {
         __ccdSupport(a, b, &up, ccd, &out->support);
         return 0;
     }
-    memset(&warm, 0, sizeof warm);
-    memset(&cache, 0, sizeof cache);
-    call_args_t args = valid_arguments(entry, &results);
-    args.warm = &warm;
-    args.cache = &cache;
-    args.want = want;
-    args.depth = &out->depth;
-    args.dir = &out->dir;
-    args.pos = want & CCD_WANT_POS ? &out->pos : NULL;
-    if (entry->number == CALL_CONTACTS) {
-        int count = call_library(entry->number, a, b, ccd, &args);
-        if (count < 1)
-            return count;
-        /* Contacts do not depend on an overlap: another call determines it. */
-        entry = &call_table[CALL_LOCAL];
-    }
     if (entry->traits & EXTENSION)
         call_library(entry->number, a, b, ccd, &args);
-    return store_result(entry, call_library(entry->number, a, b, ccd, &args), &results, out);
+    return call_library(entry->number, a, b, ccd, &args);
 }
 
 /* Runs a call and requests all results. */
-static inline int run(const call_t *entry, const void *a, const void *b, const ccd_t *ccd, outputs_t *out)
+static inline int run(const call_t *entry, const void *a, const void *b, const ccd_t *ccd, results_t *out)
 {
     return run_wanting(CCD_WANT_ALL, entry, a, b, ccd, out);
 }
@@ -147,7 +124,7 @@ static inline shape_t random_shape(void)
 }
 
 /* Returns a random polygon in the plane z = 0. */
-static inline shape_t random_polygon(void)
+static inline shape_t flat_polygon(void)
 {
     static const ccd_real_t corners[] = {1, 0, 0, 0, 1, 0, -1, 0.2f, 0, -0.3f, -0.8f, 0, 0.5f, -0.9f, 0};
     double rot[9];
@@ -164,8 +141,8 @@ static inline void random_pair(const call_t *entry, int overlapping, shape_t *a,
     const int planar = entry->number == CALL_PLANAR;
     double angle = uniform(0, 6.28), z = planar ? 0 : uniform(-1, 1), across = sqrt(1 - z * z);
     double distance = overlapping ? uniform(0, 0.1) : uniform(4, 6);
-    *a = planar ? random_polygon() : random_shape();
-    *b = planar ? random_polygon() : random_shape();
+    *a = planar ? flat_polygon() : random_shape();
+    *b = planar ? flat_polygon() : random_shape();
     shape_move(b, distance * across * cos(angle), distance * across * sin(angle), distance * z);
     *ccd = shape_query();
     if (entry->traits & FROM_FIRST_DIR)

@@ -23,7 +23,7 @@ static void leave(void)
 }
 
 /* Runs a query and returns whether a callback left it. */
-static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
+static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, results_t *out)
 {
     destroyed = 0;
     try {
@@ -47,7 +47,7 @@ static void leave(void)
     longjmp(caller, 7);
 }
 
-static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, outputs_t *out)
+static int leaves(const call_t *entry, const shape_t *a, const shape_t *b, const ccd_t *ccd, results_t *out)
 {
     if (setjmp(caller) != 0)
         return 1;
@@ -86,7 +86,7 @@ static void test(const call_t *entry, int rounds)
     for (int round = 0; round < rounds; round++) {
         shape_t a, b;
         ccd_t ccd;
-        outputs_t expected, out;
+        results_t expected, out;
         int expected_code, last;
         random_pair(entry, round % 2, &a, &b, &ccd);
         ccd.support1 = ccd.support2 = leaving_support;
@@ -95,16 +95,14 @@ static void test(const call_t *entry, int rounds)
         if (ccd.first_dir != NULL)
             ccd.first_dir = leaving_first_dir;
         calls_left = 0;
-        memset(&expected, 0, sizeof expected);
         expected_code = run(entry, &a, &b, &ccd, &expected);
         for (last = 1; last <= 50; last++) {
             calls_left = last;
             if (!leaves(entry, &a, &b, &ccd, &out))
                 break;
             calls_left = 0;
-            memset(&out, 0, sizeof out);
             int code = run(entry, &a, &b, &ccd, &out);
-            CHECK(code == expected_code && same_bits(&out, &expected, sizeof out), "%s after a query was left", entry->name);
+            CHECK(code == expected_code && same_results(&out, &expected), "%s after a query was left", entry->name);
         }
         CHECK(last > 1, "%s runs callbacks", entry->name);
     }

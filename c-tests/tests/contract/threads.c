@@ -10,14 +10,13 @@
 enum { PAIRS = 60, THREADS = 8, ROUNDS = 5 };
 
 enum { QUERIES = PAIR_CALL_COUNT * PAIRS };
-typedef struct { shape_t a, b; ccd_t ccd; int code; outputs_t out; } query_t;
+typedef struct { shape_t a, b; ccd_t ccd; int code; results_t out; } query_t;
 static query_t queries[QUERIES];
 static unsigned long different[THREADS];
 
-static int run_query(int i, outputs_t *out)
+static int run_query(int i, results_t *out)
 {
     shape_t a = queries[i].a, b = queries[i].b;
-    memset(out, 0x5a, sizeof *out);
     return run(&call_table[i / PAIRS], &a, &b, &queries[i].ccd, out);
 }
 
@@ -27,9 +26,9 @@ static void *run_all(void *arg)
     for (int k = 0; k < ROUNDS * QUERIES; k++) {
         /* Each thread in its own order. */
         const int i = (k * 7 + thread * 131) % QUERIES;
-        outputs_t out;
+        results_t out;
         const int code = run_query(i, &out);
-        different[thread] += code != queries[i].code || !same_bits(&out, &queries[i].out, sizeof out);
+        different[thread] += code != queries[i].code || !same_results(&out, &queries[i].out);
     }
     return NULL;
 }
