@@ -9,8 +9,7 @@
  *   determinism [pairs a category] */
 
 #include "categories.h"
-
-#include <stddef.h>
+#include "tests/contract/every_call.h"
 
 static void digest_bytes(uint64_t *digest, const void *memory, size_t size)
 {
@@ -19,45 +18,32 @@ static void digest_bytes(uint64_t *digest, const void *memory, size_t size)
         *digest = (*digest ^ byte[i]) * UINT64_C(0x100000001b3);
 }
 
-/* Digests as many bytes on every machine. */
-static void digest_count(uint64_t *digest, uint64_t count) { digest_bytes(digest, &count, sizeof count); }
-
 /* Digests everything that the calls write, padding excepted. Those that take a state share one. */
 static void digest_answers(uint64_t *digest, const pair_t *p, ccd_warm_t *warm)
 {
-    const ccd_vec3_t along = {{(ccd_real_t).6, 0, (ccd_real_t).8}};
     shape_t a = p->a, b = p->b;
     ccd_t ccd = shape_query();
     ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)1e-6;
-    for (int k = 0; k < PAIR_CALL_COUNT; k++) {
-        struct {
-            ccd_real_t depth;
-            ccd_vec3_t dir, pos;
-        } outputs;
-        ccd_contact_t contact[4];
-        ccd_penetration_t full;
-        ccd_distance_t distance;
-        const call_args_t x = {.warm = warm, .along = &along, .margin1 = (ccd_real_t).01, .max_distance = (ccd_real_t)INFINITY,
-                               .slop = (ccd_real_t)1e-3, .want = CCD_WANT_ALL, .max = 4, .depth = &outputs.depth,
-                               .dir = &outputs.dir, .pos = &outputs.pos, .contacts = contact, .penetration = &full,
-                               .distance = &distance};
-        memset(&outputs, 0, sizeof outputs);
-        memset(contact, 0, sizeof contact);
-        memset(&full, 0, sizeof full);
-        memset(&distance, 0, sizeof distance);
-        int code = call_library(k, &a, &b, &ccd, &x);
+    for (const call_t *call = call_table; call < call_table + PAIR_CALL_COUNT; call++) {
+        results_t r;
+        memset(&r, 0, sizeof r);
+        call_args_t args = valid_arguments(call, &r);
+        args.warm = warm;
+        args.margin1 = CCD_REAL(0.01);
+        const int code = call_library(call->number, &a, &b, &ccd, &args);
         digest_bytes(digest, &code, sizeof code);
-        digest_bytes(digest, &outputs, sizeof outputs);
+        digest_bytes(digest, &r.depth, sizeof r.depth);
+        digest_bytes(digest, &r.dir, sizeof r.dir);
+        digest_bytes(digest, &r.pos, sizeof r.pos);
         for (int i = 0; i < 4; i++)
-            digest_bytes(digest, &contact[i], offsetof(ccd_contact_t, id) + sizeof contact[i].id);
-        digest_bytes(digest, &full, offsetof(ccd_penetration_t, point2) + sizeof full.point2);
-        digest_bytes(digest, &distance, offsetof(ccd_distance_t, point2) + sizeof distance.point2);
-        digest_count(digest, distance.support_points);
-        digest_count(digest, distance.iterations);
-        digest_count(digest, full.support_points);
-        digest_count(digest, full.iterations);
+            digest_bytes(digest, &r.contacts[i], offsetof(ccd_contact_t, id) + sizeof r.contacts[i].id);
+        digest_bytes(digest, &r.distance, offsetof(ccd_distance_t, point2) + sizeof r.distance.point2);
+        digest_bytes(digest, &r.penetration, offsetof(ccd_penetration_t, point2) + sizeof r.penetration.point2);
+        /* as many bytes on every machine */
+        const uint64_t counts[] = {r.distance.support_points, r.distance.iterations, r.penetration.support_points,
+                                   r.penetration.iterations, a.calls};
+        digest_bytes(digest, counts, sizeof counts);
     }
-    digest_count(digest, (uint64_t)a.calls);
 }
 
 /* Digests the centres of both objects, and their support points all around. */
