@@ -316,7 +316,7 @@ fn polytope_functions_take_no_more_instructions_than_libccd() {
 }
 
 run_programs! {
-    distances_of_a_point_to_segments_and_triangles: on_this_library("point_distance"), [harness::rounds(20_000)];
+    distances_of_a_point_to_segments_and_triangles: on_this_library("point_distance"), [harness::rounds(200_000)];
     callbacks: on_this_library("callbacks").flag("-lpthread"), NO_ARGS;
     arguments: on_this_library("arguments"), [harness::rounds(100)];
     objects_that_touch_are_a_miss: on_this_library("touches"), [harness::rounds(20_000)];
