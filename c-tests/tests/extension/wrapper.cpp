@@ -245,39 +245,37 @@ static void conditions()
     CHECK(std::string(ccd::implementation()).rfind("warmccd ", 0) == 0, "%s", ccd::implementation());
 }
 
-struct WrongSign {
-    ccd::Vec3 support(const ccd::Vec3 &d) const { return {-d.x, -d.y, -d.z}; }
-};
-struct CenterOutside {
-    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x + 5, d.y, d.z}; }
-    ccd::Vec3 center() const { return {}; }
-};
-struct NotFinite {
-    ccd::Vec3 support(const ccd::Vec3 &d) const { return {d.x, d.y, d.z > CCD_REAL(0.9) ? ccd_real_t(NAN) : d.z}; }
-};
-/* A box: the direction is turned to its frame, the point is not turned back. */
-struct NotTurnedBack {
+/* A ball with one fault of ccdCheck. */
+struct Faulty {
+    unsigned fault;
+    mutable int calls;
+
     ccd::Vec3 support(const ccd::Vec3 &d) const
     {
-        return {std::copysign(ccd_real_t(1), d.y), std::copysign(ccd_real_t(2), d.z), std::copysign(ccd_real_t(0.5), d.x)};
+        switch (fault) {
+        case CCD_CHECK_OPPOSITE: return {-d.x, -d.y, -d.z};
+        case CCD_CHECK_NOT_FINITE: return {d.x, d.y, d.z > CCD_REAL(0.9) ? ccd_real_t(NAN) : d.z};
+        case CCD_CHECK_CONTRADICTS: /* a box: the direction is turned to its frame, the point is not turned back */
+            return {std::copysign(ccd_real_t(1), d.y), std::copysign(ccd_real_t(2), d.z), std::copysign(ccd_real_t(0.5), d.x)};
+        case CCD_CHECK_CHANGES: return ++calls > 200 ? ccd::Vec3{} : d;
+        default: return d;
+        }
     }
-};
-struct Changing {
-    mutable int calls;
-    ccd::Vec3 support(const ccd::Vec3 &d) const { return ++calls > 200 ? ccd::Vec3{} : d; }
+    ccd::Vec3 center() const { return {fault == CCD_CHECK_CENTER_OUTSIDE ? ccd_real_t(5) : 0, 0, 0}; }
 };
 
 /* Checks each fault that ccdCheck reports, by its flag. (Finer faults and their sizes: src/minkowski/validate.rs.) */
 static void support_checks()
 {
-    const auto sign = ccd::check(WrongSign{}), center = ccd::check(CenterOutside{}), valid = ccd::check(ThrowingBall{3, -1});
-    CHECK(sign.faults == CCD_CHECK_OPPOSITE, "%u", sign.faults);
-    CHECK(center && center.faults == CCD_CHECK_CENTER_OUTSIDE && center.center_outside > 3.9, "%u %g", center.faults,
-          double(center.center_outside));
+    for (const unsigned fault : {CCD_CHECK_OPPOSITE, CCD_CHECK_NOT_FINITE, CCD_CHECK_CONTRADICTS, CCD_CHECK_CHANGES,
+                                 CCD_CHECK_CENTER_OUTSIDE}) {
+        const auto found = ccd::check(Faulty{fault, 0});
+        CHECK(found && (fault == CCD_CHECK_CHANGES ? found.faults & fault : found.faults == fault), "fault %u: %u", fault,
+              found.faults);
+        CHECK(fault != CCD_CHECK_CENTER_OUTSIDE || found.center_outside > 3.9, "%g outside", double(found.center_outside));
+    }
+    const auto valid = ccd::check(ThrowingBall{3, -1});
     CHECK(!valid && valid.size > 1.9 && valid.center_outside < 0, "%u %g", valid.faults, double(valid.size));
-    CHECK(ccd::check(NotFinite{}).faults == CCD_CHECK_NOT_FINITE, "not finite");
-    CHECK(ccd::check(NotTurnedBack{}).faults == CCD_CHECK_CONTRADICTS, "not turned back");
-    CHECK(ccd::check(Changing{0}).faults & CCD_CHECK_CHANGES, "changes between calls");
 
     const shape_t box = shape_box(1, 2, 3);
     ccd_check_t found, before;

@@ -10,41 +10,15 @@
 
 use std::path::Path;
 
-/// Header and the files of src/ffi that it is generated from: its head and its sections.
-struct Header {
-    name: &'static str,
-    guard: &'static str,
-    includes: &'static str,
-    head: &'static str,
-    sections: &'static [&'static str],
-}
-
-const HEADERS: [Header; 2] = [
-    Header {
-        name: "warm.h",
-        guard: "__CCD_WARM_H__",
-        includes: "#include <ccd/ccd.h>",
-        head: "warm.rs",
-        sections: &[
-            "warm/codes.rs",
-            "warm/state.rs",
-            "warm/penetration.rs",
-            "warm/intersect.rs",
-            "warm/distance.rs",
-            "warm/contacts.rs",
-            "warm/special.rs",
-            "warm/libccd.rs",
-            "warm/check.rs",
-            "warm/identity.rs",
-        ],
-    },
-    Header {
-        name: "paper.h",
-        guard: "__CCD_PAPER_H__",
-        includes: "#include <ccd/warm.h>",
-        head: "paper.rs",
-        sections: &["paper.rs"],
-    },
+/// Each header with what it includes and the files of src/ffi that are its sections. Its head is in a file of its name.
+const HEADERS: [(&str, &str, &str); 2] = [
+    (
+        "warm",
+        "ccd/ccd.h",
+        "warm/codes warm/state warm/penetration warm/intersect warm/distance warm/contacts warm/special warm/libccd \
+         warm/check warm/identity",
+    ),
+    ("paper", "ccd/warm.h", "paper"),
 ];
 
 /// Converts a file's first comment to C.
@@ -94,25 +68,24 @@ fn section(path: &Path) -> String {
     lines.collect::<Vec<_>>().join("\n") + "\n"
 }
 
-fn generated(root: &Path, header: &Header) -> String {
-    let ffi = root.join("src/ffi");
-    let read = |file: &str| std::fs::read_to_string(ffi.join(file)).expect(file);
-    let guard = header.guard;
+fn generated(root: &Path, name: &str, included: &str, sections: &str) -> String {
+    let path = |file: &str| root.join(format!("src/ffi/{file}.rs"));
+    let heading_of = |file: &str| heading(&std::fs::read_to_string(path(file)).expect(file));
+    let guard = format!("__CCD_{}_H__", name.to_uppercase());
     let mut text = format!(
         "/* SPDX-FileCopyrightText: 2026 The warmccd developers\n \
          * SPDX-License-Identifier: BSD-3-Clause */\n\n\
-         {}\n#ifndef {guard}\n#define {guard}\n\n{}\n\n\
+         {}\n#ifndef {guard}\n#define {guard}\n\n#include <{included}>\n\n\
          #ifdef __cplusplus\nextern \"C\" {{\n#endif\n",
-        heading(&read(header.head)),
-        header.includes
+        heading_of(name),
     );
-    for file in header.sections {
-        if *file != header.head {
+    for file in sections.split(' ') {
+        if file != name {
             text += "\n\n";
-            text += &heading(&read(file));
+            text += &heading_of(file);
         }
         text += "\n";
-        text += &section(&ffi.join(file));
+        text += &section(&path(file));
     }
     text + &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n")
 }
@@ -120,14 +93,13 @@ fn generated(root: &Path, header: &Header) -> String {
 #[test]
 fn headers_match_the_source() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for header in &HEADERS {
-        let path = root.join("include/ccd").join(header.name);
-        let generated = generated(root, header);
+    for (name, included, sections) in HEADERS {
+        let path = root.join(format!("include/ccd/{name}.h"));
+        let generated = generated(root, name, included, sections);
         if std::env::var_os("WRITE_HEADER").is_some() {
             std::fs::write(&path, &generated).expect("write the header");
         }
         let committed = std::fs::read_to_string(&path).unwrap_or_default();
-        let name = header.name;
-        assert!(committed == generated, "{name} is stale: WRITE_HEADER=1 cargo test --test integration header::");
+        assert!(committed == generated, "{name}.h is stale: WRITE_HEADER=1 cargo test --test integration header::");
     }
 }
