@@ -195,10 +195,36 @@ static void change_state(rng_t *d, ccd_warm_t *warm)
 /* --- states -------------------------------------------------------------------------- */
 
 typedef struct {
-    unsigned long cold, warm;   /* support calls of the hits */
+    unsigned long cold, warm, parted; /* support calls of the hits; parted: from the state of a pair that was apart before */
+    unsigned long apart, apart_guess; /* support calls of the misses, cold and from a guess */
     unsigned long own, flipped; /* support calls of all pairs, from their own and the flipped state */
     int hits, different, limited;
 } count_t;
+
+/* Returns the support calls from the state of a pair that was apart and then overlapped. */
+static unsigned long cost_parted(case_t *c)
+{
+    const shape_t b = c->pair.b;
+    ccd_warm_t warm;
+    memset(&warm, 0, sizeof warm);
+    shape_shift(&c->pair.b, c->pair.truth.depth + 1e-2 * pair_size(&c->pair.a, &b), c->pair.truth.n);
+    run_unjudged(c, 0, &warm);
+    c->pair.b = b;
+    run_unjudged(c, 0, &warm); /* finds that the old direction separates no more */
+    return cost(c, 0, &warm);
+}
+
+/* Returns the support calls from a guess ten degrees off the true normal. */
+static unsigned long cost_guess(case_t *c)
+{
+    const double *n = c->pair.truth.n, across[3] = {n[1] - n[2], n[2] - n[0], n[0] - n[1]}, l = sqrt(truth_dot3(across, across));
+    ccd_vec3_t guess;
+    ccd_warm_t warm;
+    for (int k = 0; k < 3; k++)
+        guess.v[k] = (ccd_real_t)(n[k] + (l > 0 ? tan(3.14159265358979323846 / 18) * across[k] / l : 0));
+    OURS(ccdWarmGuess)(&warm, &guess);
+    return cost(c, 0, &warm);
+}
 
 /* Runs one pair from every kind of state; other: the state of the pair before. */
 static void run_from_every_state(case_t *c, ccd_warm_t *other, count_t *n)
@@ -216,6 +242,11 @@ static void run_from_every_state(case_t *c, ccd_warm_t *other, count_t *n)
         n->hits++;
         n->cold += cost(c, 0, &none);
         n->warm += cost(c, 0, &warm);
+        n->parted += cost_parted(c);
+    }
+    if (cold.code == CCD_MISS && c->criteria.truth.depth < 0) {
+        n->apart += cost(c, 0, &none);
+        n->apart_guess += cost_guess(c);
     }
     copy = warm;
     x = run_judged(c, 0, &copy, "its own state");
@@ -257,6 +288,12 @@ static void check_states(int call)
     /* A flipped distance resolves ties differently: 5 % more. In single precision there are more ties. */
     const unsigned long most = call == CALL_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103;
     CHECK(100 * n.flipped <= most * n.own, "%s: %lu support calls, %lu from flipped states", name, n.own, n.flipped);
+    /* A state costs no more than none, whatever the pair did before; nor does a guess, if a penetration is computed. */
+    const int is_penetration = call != CALL_DISTANCE && call != CALL_MPR_INTERSECT_WARM;
+    CHECK(100 * n.warm <= 102 * n.cold && 100 * n.parted <= 102 * n.warm, "%s: %lu support calls cold, %lu warm, %lu apart before",
+          name, n.cold, n.warm, n.parted);
+    CHECK(100 * n.apart_guess <= (is_penetration ? 102 : 110) * n.apart, "%s: %lu support calls apart, %lu from a guess", name,
+          n.apart, n.apart_guess);
     /* A portal's first directions are mirrored with the pair: few searches differ. */
     if (call == CALL_LOCAL || call == CALL_PLANAR)
         CHECK(n.different <= PAIRS / 20, "%s: %d of %d differ from a flipped state", name, n.different, PAIRS);

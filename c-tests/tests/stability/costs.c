@@ -20,7 +20,7 @@ typedef struct {
     unsigned long queries;
 } cost_t;
 
-/* Adds one sample; which: a call or a variant. */
+/* Adds one sample; which: a call, or what is measured. */
 typedef void sample_t(int which, rng_t *d, cost_t *cost);
 
 typedef struct {
@@ -57,52 +57,6 @@ static void make_overlapping(rng_t *d, pair_t *p, const int *types, int n, doubl
 }
 
 static const int round_types[] = {SHAPE_SPHERE, SHAPE_CAPSULE, SHAPE_ELLIPSOID};
-
-/* --- U07: overlapping pairs that were apart before ------------------------------------------- */
-
-enum { VARIANT = PAIR_CALL_COUNT }; /* added to a call: the second variant of a sample */
-
-/* The reference is a pair that was never apart, or in the second variant a cold query. */
-static void sample_apart_before(int which, rng_t *d, cost_t *cost)
-{
-    const int call = which % VARIANT;
-    static pair_t p;
-    ccd_warm_t first = {0}, second = {0};
-    make_overlapping(d, &p, all_types, SHAPE_TYPES, 1e-2);
-    shape_t away = p.b;
-    shape_shift(&away, 2e-2 * pair_size(&p.a, &p.b), p.truth.n);
-    points_of(call, &p.a, &away, &first);
-    points_of(call, &p.a, &p.b, &first); /* finds that the old direction separates no more */
-    cost->points += points_of(call, &p.a, &p.b, &first);
-    points_of(call, &p.a, &p.b, &second);
-    cost->reference += points_of(call, &p.a, &p.b, which < VARIANT ? &second : NULL);
-}
-
-/* --- U08: pairs apart that are queried once --------------------------------------------------- */
-
-/* A little or, in the second variant, far apart. A local query starts from a guess ten degrees off, MPR
- * from a fresh state. */
-static void sample_apart_once(int which, rng_t *d, cost_t *cost)
-{
-    const int call = which % VARIANT;
-    const double gap = which < VARIANT ? .05 : 3;
-    static pair_t p;
-    ccd_warm_t state = {0};
-    make_overlapping(d, &p, all_types, SHAPE_TYPES, 1e-2);
-    shape_shift(&p.b, gap * pair_size(&p.a, &p.b), p.truth.n);
-    if (call == CALL_LOCAL) {
-        double axis[3], rot[9], n[3];
-        ccd_vec3_t guess;
-        rng_unit_vector(d, axis);
-        truth_cross3(axis, p.truth.n, n);
-        rotation_about(n[0], n[1], n[2], 3.14159265358979323846 / 18, rot);
-        for (int k = 0; k < 3; k++)
-            guess.v[k] = (ccd_real_t)truth_dot3(rot + 3 * k, p.truth.n);
-        OURS(ccdWarmGuess)(&state, &guess);
-    }
-    cost->points += points_of(call, &p.a, &p.b, &state);
-    cost->reference += points_of(call, &p.a, &p.b, NULL);
-}
 
 /* --- U11: faces that rest on each other, unchanged; their position is not read ------------------- */
 
@@ -290,14 +244,6 @@ static size_t deepest_stack(int is_boolean)
 static const guarantee_t guarantees[] = {
     {"U03", "stack of any call", NULL, 0, 0, 44 << 10},
     {"U03", "stack of a boolean", NULL, 1, 0, 8 << 10},
-    {"U07", "boolean, apart before, against never apart", sample_apart_before, CALL_MPR_INTERSECT_WARM, 4000, 1.02},
-    {"U07", "boolean, apart before, against cold", sample_apart_before, CALL_MPR_INTERSECT_WARM + VARIANT, 4000, 1.02},
-    {"U07", "MPR, apart before, against never apart", sample_apart_before, CALL_MPR_WARM, 4000, 1.02},
-    {"U07", "MPR, apart before, against cold", sample_apart_before, CALL_MPR_WARM + VARIANT, 4000, 1.02},
-    {"U08", "local with a guess, a little apart", sample_apart_once, CALL_LOCAL, 4100, 1.02},
-    {"U08", "local with a guess, far apart", sample_apart_once, CALL_LOCAL + VARIANT, 4100, 1.02},
-    {"U08", "MPR with a fresh state, a little apart", sample_apart_once, CALL_MPR_WARM, 4100, 1.02},
-    {"U08", "MPR with a fresh state, far apart", sample_apart_once, CALL_MPR_WARM + VARIANT, 4100, 1.02},
     {"U11", "a face that rests on a face, its position not read", sample_unchanged, CALL_MPR_WARM, 4201, 4.5},
     {"U14", "boolean, staying apart", sample_staying_apart, CALL_MPR_INTERSECT_WARM, 4400, 1.05},
     {"U14", "MPR, staying apart", sample_staying_apart, CALL_MPR_WARM, 4400, 1.05},
