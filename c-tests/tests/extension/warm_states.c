@@ -330,36 +330,34 @@ static void check_changed_states(void)
  * stays on the side of its state, and a depth along a direction on that side. */
 static void check_sides(void)
 {
-    shape_t slab = shape_box(2, 2, 0.05), plate = shape_box(0.25, 0.25, 0.01);
-    const ccd_vec3_t up = {{0, 0, 1}};
+    enum { LOCAL, ALONG, MINIMUM, MPR, DISTANCE, SIDES };
+    static const int numbers[SIDES] = {CALL_LOCAL, CALL_ALONG, CALL_PROVEN, CALL_MPR_WARM, CALL_DISTANCE};
+    static case_t c;
+    ccd_warm_t warm[SIDES];
     double rot[9];
     int frames_up = 0;
-    ccd_warm_t warm[5];
     memset(warm, 0, sizeof warm);
-    ccd_t ccd = shape_query();
-    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = CCD_REAL(1e-5);
+    pair_clear(&c.pair);
+    c.pair.a = shape_box(2, 2, 0.05);
+    c.pair.b = shape_box(0.25, 0.25, 0.01);
+    c.dir[2] = 1;
+    c.criteria.tol = 1e-5;
     rotation_about(1, 2, 0.3, 0.02, rot);
-    shape_turn(&plate, rot);
+    shape_turn(&c.pair.b, rot);
     for (int frame = 0; frame < 120; frame++) {
         const double depth = 0.001 * frame + 0.0061; /* the plate's lowest corner is 5.6 mm below its center */
-        ccd_penetration_t local, along, minimum;
-        ccd_distance_t distance;
-        ccd_real_t mpr;
-        ccd_vec3_t dir, pos;
-        shape_move(&plate, 0.013, 0.027, 0.0605 - 0.001 * frame);
-        CHECK(OURS(ccdPenetrationLocal)(&slab, &plate, &ccd, &warm[0], CCD_WANT_ALL, &local) == CCD_HIT, "frame %d", frame);
-        CHECK(OURS(ccdPenetrationAlong)(&slab, &plate, &ccd, &up, &warm[1], CCD_WANT_ALL, &along) == CCD_HIT, "frame %d", frame);
-        CHECK(OURS(ccdPenetrationProven)(&slab, &plate, &ccd, &warm[2], CCD_WANT_ALL, &minimum) == CCD_HIT, "frame %d", frame);
-        CHECK(OURS(ccdMPRPenetrationWarm)(&slab, &plate, &ccd, &warm[3], &mpr, &dir, &pos) == 0, "frame %d", frame);
-        CHECK(OURS(ccdSignedDistance)(&slab, &plate, &ccd, 0, 0, 0, &warm[4], CCD_WANT_ALL, &distance) == CCD_HIT,
-              "frame %d", frame);
-        CHECK(local.dir.v[2] > CCD_REAL(0.99) && fabs((double)local.depth - depth) < 1e-3,
-              "local: %g at %g", (double)local.depth, depth);
-        CHECK(along.dir.v[2] > CCD_REAL(0.99) && fabs((double)along.depth - depth) < 1e-3,
-              "along: %g at %g", (double)along.depth, depth);
-        CHECK((dir.v[2] > 0) == (minimum.dir.v[2] > 0) && (distance.normal.v[2] > 0) == (minimum.dir.v[2] > 0),
-              "frame %d: sides", frame);
-        frames_up += minimum.dir.v[2] > 0;
+        answer_t x[SIDES];
+        shape_move(&c.pair.b, 0.013, 0.027, 0.0605 - 0.001 * frame);
+        for (int k = 0; k < SIDES; k++) {
+            c.call.call = numbers[k];
+            x[k] = run_unjudged(&c, 0, &warm[k]);
+            CHECK(x[k].code == CCD_HIT, "frame %d, %s: %d", frame, call_table[numbers[k]].name, x[k].code);
+            if (k <= ALONG)
+                CHECK(x[k].dir[2] > 0.99 && fabs(x[k].depth - depth) < 1e-3, "frame %d, %d: %g at %g", frame, k, x[k].depth, depth);
+            else
+                CHECK((x[k].dir[2] > 0) == (x[MINIMUM].dir[2] > 0), "frame %d, %d: another side", frame, k);
+        }
+        frames_up += x[MINIMUM].dir[2] > 0;
     }
     CHECK(frames_up == 60 || frames_up == 61, "%d frames up", frames_up);
 }
