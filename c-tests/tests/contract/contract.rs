@@ -320,7 +320,8 @@ run_programs! {
     callbacks: on_this_library("callbacks").flag("-lpthread"), NO_ARGS;
     arguments: on_this_library("arguments"), [harness::rounds(100)];
     objects_that_touch_are_a_miss: on_this_library("touches"), [harness::rounds(20_000)];
-    memory: on_this_library("memory").without_tools(), NO_ARGS;
+    memory: on_this_library("memory").flag("-DCOUNT_BLOCKS").without_tools(), NO_ARGS;
+    memory_of_polytopes: polytope_program().flag("-DCOUNT_BLOCKS").without_tools(), ["50"];
     threads: on_this_library("threads").flag("-lpthread"), NO_ARGS;
     longjmp_out_of_callbacks: on_this_library("exceptions"), [harness::rounds(20)];
     longjmp_out_of_callbacks_of_the_archive: on_this_library("exceptions").link(Link::Static), [harness::rounds(20)];

@@ -4,9 +4,13 @@
 /* Checks the polytope functions of the loaded library by random sequences of additions, deletions by
  * the user's inline functions, nearest elements set by the user, searches and recomputations. After each
  * step the polytope is compared with the elements in the order of their addition, and the nearest one by libccd's rule for
- * the distances in the elements. (point_distance.c checks the distances themselves.) */
+ * the distances in the elements. (point_distance.c checks the distances themselves.)
+ *
+ * With -DCOUNT_BLOCKS: an element is one block of exactly its size of this program's malloc, which either side may free.
+ * Nothing else is allocated, and a failed allocation returns NULL and changes nothing. */
 
 #include "check.h"
+#include "heap.h"
 #include "harness/identity.h"
 #include "polytope.h"
 #include <math.h>
@@ -142,6 +146,8 @@ static any_t *added(void *element, int type, const void *a, const void *b, const
     elements[count].at = (any_t *)element;
     memcpy(elements[count].parts, parts, sizeof parts);
     CHECK(elements[count].at->el.type == type, "type");
+    static const size_t sizes[] = {[PT_VERTEX] = sizeof(pt_vertex_t), [PT_EDGE] = sizeof(pt_edge_t), [PT_FACE] = sizeof(pt_face_t)};
+    CHECK(!COUNTS_BLOCKS || (live == count + 1 && last.block == element && last.size == sizes[type]), "an element is a block of its size");
     update_nearest(elements[count].at);
     return elements[count++].at;
 }
@@ -270,6 +276,23 @@ static void reject_null(void)
     CHECK(ccdPtAddFace(&pt, edge, edge, NULL) == NULL, "NULL edge");
 }
 
+/* Adds elements without memory. */
+static void fail_to_add(void)
+{
+    any_t *v = pick_element(PT_VERTEX), *e = pick_element(PT_EDGE);
+    support_t s;
+    memset(&s, 0, sizeof s);
+    if (!COUNTS_BLOCKS)
+        return;
+    fail_at = allocations + 1;
+    CHECK(ccdPtAddVertex(&pt, &s) == NULL && allocations == fail_at, "no memory for a vertex");
+    fail_at = allocations + 1;
+    CHECK(v == NULL || (ccdPtAddEdge(&pt, &v->vertex, &v->vertex) == NULL && allocations == fail_at), "no memory for an edge");
+    fail_at = allocations + 1;
+    CHECK(e == NULL || (ccdPtAddFace(&pt, &e->edge, &e->edge, &e->edge) == NULL && allocations == fail_at), "no memory for a face");
+    fail_at = 0;
+}
+
 /* Prints the polytope's text for the driver, which compares both libraries. Checks that it is appended to a file, written
  * to a stream, and that vertices are numbered. */
 static void dump(void)
@@ -310,11 +333,14 @@ int main(int argc, char **argv)
     /* as often as listed */
     static void (*const steps[])(void) = {
         add_vertex, add_vertex, add_vertex, add_vertex, add_vertex, add_any_edge, add_any_edge, add_face, add_face, add_face,
-        add_face, add_face, delete_any, delete_any, delete_any, search, search, set_nearest, recompute, reject_null};
+        add_face, add_face, delete_any, delete_any, delete_any, search, search, set_nearest, recompute, reject_null,
+        fail_to_add};
     const int polytopes = atoi(argc > 1 ? argv[1] : "200");
+    setvbuf(stdout, NULL, _IONBF, 0); /* no block of stdout's is counted */
     ours = running_ccd() != NULL;
     for (int round = 0; round < polytopes; round++) {
         count = 0;
+        start_counting(0);
         memset(&pt, 0xa5, sizeof pt);
         ccdPtInit(&pt);
         reset_nearest();
@@ -323,11 +349,13 @@ int main(int argc, char **argv)
         for (int step = 0; step < 150 && count < MAX_ELEMENTS - 8; step++) {
             steps[random_below(sizeof steps / sizeof *steps)]();
             check_polytope();
+            CHECK(!COUNTS_BLOCKS || live == count, "%d blocks of %d elements", live, count);
         }
         dump();
         ccdPtDestroy(&pt);
         CHECK(list_length(&pt.vertices) + list_length(&pt.edges) + list_length(&pt.faces) == 0, "empty after destroy");
         CHECK(pt.nearest == NULL, "nothing is nearest after destroy");
+        CHECK(!COUNTS_BLOCKS || live == 0, "%d blocks left", live);
     }
     return checks_end();
 }
