@@ -288,11 +288,10 @@ static void check_states(int call)
     /* A flipped distance resolves ties differently: 5 % more. In single precision there are more ties. */
     const unsigned long most = call == CALL_DISTANCE ? 106 : sizeof(ccd_real_t) == 8 ? 102 : 103;
     CHECK(100 * n.flipped <= most * n.own, "%s: %lu support calls, %lu from flipped states", name, n.own, n.flipped);
-    /* A state costs no more than none, whatever the pair did before; nor does a guess, if a penetration is computed. */
-    const int is_penetration = call != CALL_DISTANCE && call != CALL_MPR_INTERSECT_WARM;
+    /* A state costs no more than none, whatever the pair did before; nor does a guess in a local search, for which it is. */
     CHECK(100 * n.warm <= 102 * n.cold && 100 * n.parted <= 102 * n.warm, "%s: %lu support calls cold, %lu warm, %lu apart before",
           name, n.cold, n.warm, n.parted);
-    CHECK(100 * n.apart_guess <= (is_penetration ? 102 : 110) * n.apart, "%s: %lu support calls apart, %lu from a guess", name,
+    CHECK(100 * n.apart_guess <= (call == CALL_LOCAL ? 102 : 110) * n.apart, "%s: %lu support calls apart, %lu from a guess", name,
           n.apart, n.apart_guess);
     /* A portal's first directions are mirrored with the pair: few searches differ. */
     if (call == CALL_LOCAL || call == CALL_PLANAR)
