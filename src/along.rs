@@ -250,8 +250,8 @@ mod tests {
 
     fn along(md: &Difference, dir: &Vec3, tolerance: f64, max_iterations: u64) -> Penetration {
         let settings = Settings {
-            tolerance,
             max_iterations,
+            ..Settings::new(tolerance)
         };
         let mut set = VertexSet::<16>::EMPTY;
         penetration(md, &mut set, dir, &settings).expect("the origin is inside")
@@ -395,8 +395,8 @@ mod tests {
     fn an_origin_outside_is_separated() {
         let mut r = Random::new(3);
         let settings = Settings {
-            tolerance: 1e-6,
             max_iterations: 1000,
+            ..Settings::new(1e-6)
         };
         for _ in 0..500 {
             let half = Vec3::from_fn(|_, _| r.within(0.3, 1.0));

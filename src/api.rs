@@ -11,20 +11,20 @@ use core::fmt;
 
 use crate::contact::manifold;
 use crate::contact::manifold_cache;
-use crate::ffi::arena::OwnedBuffers;
+use crate::ffi::arena::LargeBuffers;
 use crate::ffi::warm::NAME;
 pub use crate::math::Real;
-use crate::math::{ITERATION_CAP, Vec3, from_real, lower_to_real, to_real, unit};
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, if_overlapping};
+use crate::math::{Vec3, from_real, lower_to_real, to_real};
+pub use crate::minkowski::support::Fault as Error;
+use crate::minkowski::support::SupportMap;
+use crate::minkowski::support_query::if_overlapping;
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
-use crate::query::Pair;
-use crate::query::signed_distance::Margins;
-use crate::solver::Solver;
+pub use crate::query::signed_distance::DistanceOptions;
+use crate::query::{Pair, Solver, direction};
 use crate::types;
-pub use crate::types::{Status, Want};
+pub use crate::types::{Settings, Status};
 
 /// A convex shape, given by its support function.
 ///
@@ -67,88 +67,22 @@ impl<F: Fn([Real; 3]) -> [Real; 3]> Shape for (F, [Real; 3]) {
     }
 }
 
-/// Cause of a query without a result. The caller's state is unchanged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Error {
-    /// An argument or a point of a shape is invalid; the text names it.
-    BadInput(&'static str),
-    /// An allocation failed.
-    NoMemory,
-}
-
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Error::BadInput(cause) => f.write_str(cause),
-            Error::NoMemory => f.write_str("out of memory"),
-        }
+        f.write_str(match self {
+            Error::NonFinite => "a shape's point is not finite, or too large",
+            Error::NoMemory => "out of memory",
+            Error::Missing => "an argument is missing",
+            Error::Tolerance => "the tolerance is negative or NaN",
+            Error::Center => "a shape's center is not finite",
+            Error::Direction => "a direction is zero or not finite",
+            Error::DistanceOptions => "a margin or max_distance is negative or not finite",
+            Error::ContactOptions => "the slop is negative or NaN, or there is no room",
+        })
     }
 }
 
 impl std::error::Error for Error {}
-
-impl From<Fault> for Error {
-    fn from(fault: Fault) -> Self {
-        match fault {
-            Fault::NoMemory => Error::NoMemory,
-            _ => Error::BadInput("a shape's point is not finite, or too large"),
-        }
-    }
-}
-
-/// Converts a length; returns the error `cause` if it is negative or NaN.
-fn validate_length(value: Real, cause: &'static str) -> Result<f64, Error> {
-    if value >= 0.0 {
-        Ok(value.into())
-    } else {
-        Err(Error::BadInput(cause))
-    }
-}
-
-/// Returns a direction as a unit vector.
-///
-/// # Errors
-/// A direction that is zero or not finite.
-fn validate_direction(dir: [Real; 3]) -> Result<Vec3, Error> {
-    unit(&from_real(dir)).ok_or(Error::BadInput("a direction is zero or not finite"))
-}
-
-/// Tolerance, iteration limit and requested results of a query.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Largest error of the depth or distance, metres, not negative. It is raised to a few units in
-    /// the last place of the coordinates, so 0 selects the smallest, and lowered to 2.5e-4 of the size
-    /// of the Minkowski difference.
-    pub tolerance: Real,
-    /// Limit on the support points after the first tetrahedron or portal, in `penetration_planar` on
-    /// the portal steps. The library's own limits are 160, 320 for proofs, along a direction and
-    /// planar, 380 for distances. No query takes more than 500 support points in the tests.
-    pub max_iterations: u64,
-    /// The requested results.
-    pub want: Want,
-}
-
-impl Settings {
-    /// Returns the default settings with this tolerance, metres.
-    pub fn new(tolerance: Real) -> Self {
-        Settings {
-            tolerance,
-            ..Settings::default()
-        }
-    }
-}
-
-impl Default for Settings {
-    /// Returns a tolerance of 0.1 mm, the library's iteration limit and [`Want::ALL`].
-    fn default() -> Self {
-        Settings {
-            tolerance: 1e-4,
-            max_iterations: u64::MAX,
-            want: Want::ALL,
-        }
-    }
-}
 
 /// Warm start state of one pair, kept between queries: a plain value. The default is cold.
 ///
@@ -191,15 +125,15 @@ pub struct Penetration {
     /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in
     /// [`penetration_along`].
     pub normal: [Real; 3],
-    /// Contact position, [`Want::pos`]: the center of pressure, an estimate of the centroid of the
+    /// Contact position, [`Settings::pos`]: the center of pressure, an estimate of the centroid of the
     /// overlap volume, projected along `normal` to the plane midway between the two support planes.
     /// If `status` is not converged, and in [`penetration_along`] and [`penetration_planar`], the middle of the witness
     /// points.
     pub pos: [Real; 3],
-    /// Witness point of the first shape, [`Want::points`]: in the shape and on its support plane,
+    /// Witness point of the first shape, [`Settings::points`]: in the shape and on its support plane,
     /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).
     pub point1: [Real; 3],
-    /// Witness point of the second shape, [`Want::points`]: as `point1`.
+    /// Witness point of the second shape, [`Settings::points`]: as `point1`.
     pub point2: [Real; 3],
     /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
     /// rounded up.
@@ -209,28 +143,6 @@ pub struct Penetration {
     /// Why the search ended; the result is less exact than requested unless this is
     /// [`Status::Converged`].
     pub status: Status,
-}
-
-/// Margins and largest distance of [`signed_distance`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DistanceOptions {
-    /// Radius of a ball added to the first shape, metres, not negative.
-    pub margin1: Real,
-    /// Radius of a ball added to the second shape, metres, not negative.
-    pub margin2: Real,
-    /// The search ends when the distance is proven to be greater than this, metres, not negative.
-    pub max_distance: Real,
-}
-
-impl Default for DistanceOptions {
-    /// Returns options without margins and without a largest distance.
-    fn default() -> Self {
-        DistanceOptions {
-            margin1: 0.0,
-            margin2: 0.0,
-            max_distance: Real::INFINITY,
-        }
-    }
 }
 
 /// Result of [`signed_distance`].
@@ -245,9 +157,9 @@ pub struct Distance {
     pub distance_upper: Real,
     /// Unit, from the first shape to the second: moving the second along it increases the distance.
     pub normal: [Real; 3],
-    /// Witness point on the surface of the first shape with its margin, [`Want::points`].
+    /// Witness point on the surface of the first shape with its margin, [`Settings::points`].
     pub point1: [Real; 3],
-    /// Witness point on the surface of the second shape with its margin, [`Want::points`].
+    /// Witness point on the surface of the second shape with its margin, [`Settings::points`].
     pub point2: [Real; 3],
     /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
     /// rounded up.
@@ -273,63 +185,22 @@ pub struct Contact {
     pub id: u32,
 }
 
-/// A caller's shape as a support function of the solvers.
-struct SupportOf<'a, S: ?Sized>(&'a S);
-
-impl<S: Shape + ?Sized> SupportMap for SupportOf<'_, S> {
-    #[inline]
-    fn support(&self, dir: &Vec3) -> Vec3 {
-        from_real(self.0.support(to_real(dir)))
-    }
-}
-
-type ShapePair<'a, A, B> = Pair<SupportOf<'a, A>, SupportOf<'a, B>>;
-
-/// Makes the pair of two shapes with these settings. `has_state`: true if the caller keeps a state.
-///
-/// # Errors
-/// A center that is not finite; a tolerance that is negative or NaN.
-fn make_pair<'a, A, B>(
-    a: &'a A,
-    b: &'a B,
+/// Runs a query with the state of `warm`, or a cold one without it, and stores the new state. A fault leaves the state
+/// unchanged. Returns `None` if the shapes are separated.
+fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
+    a: &A,
+    b: &B,
     settings: &Settings,
-) -> Result<ShapePair<'a, A, B>, Error>
-where
-    A: Shape + ?Sized,
-    B: Shape + ?Sized,
-{
-    let want = settings.want;
-    let settings = types::Settings {
-        tolerance: validate_length(settings.tolerance, "the tolerance is negative or NaN")?,
-        max_iterations: ITERATION_CAP.min(settings.max_iterations),
-    };
+    warm: Option<&mut Warm>,
+    solver: Solver,
+) -> Result<Option<types::Penetration>, Error> {
     let centers = match (a.center(), b.center()) {
-        (Some(v1), Some(v2)) => {
-            let [v1, v2] = [from_real(v1), from_real(v2)];
-            Some(SupportPoint { v: v1 - v2, v1, v2 })
-        }
+        (Some(v1), Some(v2)) => Some([v1, v2].map(from_real)),
         _ => None,
     };
-    if centers.is_some_and(|c| !c.v.sum().is_finite()) {
-        return Err(Error::BadInput("a shape's center is not finite"));
-    }
-    Ok(Pair {
-        difference: MinkowskiDifference::new(SupportOf(a), SupportOf(b)),
-        centers,
-        first_dir: None,
-        settings,
-        want,
-    })
-}
-
-/// Runs `solve` with the state of `warm`, or a cold one without it, and stores the new state. A fault
-/// leaves the state unchanged. Returns `None` if the shapes are separated.
-fn with_state<R>(
-    warm: Option<&mut Warm>,
-    solve: impl FnOnce(&mut WarmStart) -> Result<R, Stop>,
-) -> Result<Option<R>, Error> {
+    let pair = Pair::new((support_of(a), support_of(b)), centers, None, settings)?;
     let mut state = warm.as_ref().map_or(WarmStart::COLD, |warm| warm.0);
-    let found = solve(&mut state);
+    let found = pair.run(solver, &mut state, &mut LargeBuffers::default());
     state.note_separation(&found);
     let found = if_overlapping(found)?;
     if let Some(warm) = warm {
@@ -338,22 +209,9 @@ fn with_state<R>(
     Ok(found)
 }
 
-/// Runs a query with a result; `None` if the shapes are separated.
-fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
-    a: &A,
-    b: &B,
-    settings: &Settings,
-    warm: Option<&mut Warm>,
-    solver: Solver,
-) -> Result<Option<types::Penetration>, Error> {
-    let pair = make_pair(a, b, settings)?;
-    let mut found = with_state(warm, |state| {
-        solver.run(&pair, state, &mut OwnedBuffers::default())
-    })?;
-    if let Some(hit) = &mut found {
-        hit.finish(pair.difference.supports(), pair.want);
-    }
-    Ok(found)
+/// Returns a caller's shape as a support function of the solvers.
+fn support_of<S: Shape + ?Sized>(shape: &S) -> impl SupportMap {
+    |dir: &Vec3| from_real(shape.support(to_real(dir)))
 }
 
 impl From<types::Penetration> for Penetration {
@@ -384,7 +242,6 @@ macro_rules! query {
             settings: &Settings,
             warm: Option<&mut Warm>,
         ) -> Result<Option<Penetration>, Error> {
-            $(let $dir = validate_direction($dir)?;)?
             Ok(run(a, b, settings, warm, $solver)?.map(Penetration::from))
         }
     };
@@ -448,8 +305,7 @@ pub fn intersect<A: Shape + ?Sized, B: Shape + ?Sized>(
     b: &B,
     warm: Option<&mut Warm>,
 ) -> Result<bool, Error> {
-    let pair = make_pair(a, b, &Settings::default())?;
-    Ok(with_state(warm, |state| pair.intersect(state))?.is_some())
+    Ok(run(a, b, &Settings::default(), warm, Solver::Intersect)?.is_some())
 }
 
 /// Computes the signed distance: the gap of shapes that are apart, minus the penetration depth of
@@ -480,23 +336,13 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     options: &DistanceOptions,
     warm: Option<&mut Warm>,
 ) -> Result<Distance, Error> {
-    let cause = "a margin is negative, NaN or not finite";
-    let margins = Margins {
-        margin1: validate_length(options.margin1, cause)?,
-        margin2: validate_length(options.margin2, cause)?,
-        max_distance: validate_length(options.max_distance, "max_distance is negative or NaN")?,
-    };
-    if !(margins.margin1 + margins.margin2 < f64::from(Real::MAX)) {
-        return Err(Error::BadInput(cause));
-    }
     // A distance has no position.
-    let points = settings.want.points;
     let settings = Settings {
-        want: Want { pos: false, points },
+        pos: false,
         ..*settings
     };
     // A distance always has a result.
-    let found = run(a, b, &settings, warm, Solver::Distance(margins))?.unwrap_or_default();
+    let found = run(a, b, &settings, warm, Solver::Distance(*options))?.unwrap_or_default();
     let (distance, distance_upper) = found.distance_bounds();
     Ok(Distance {
         distance,
@@ -549,14 +395,20 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     cache: Option<&mut ManifoldCache>,
     room: &'r mut [Contact],
 ) -> Result<&'r [Contact], Error> {
-    let normal = validate_direction(normal)?;
-    let slop = validate_length(slop, "the slop is negative or NaN")?;
-    if room.is_empty() {
-        return Err(Error::BadInput("no room for a contact"));
+    let normal = direction(&from_real(normal))?;
+    if !(slop >= 0.0) || room.is_empty() {
+        return Err(Error::ContactOptions);
     }
     let max = room.len().min(manifold::MAX_CONTACTS);
     let cache = cache.map(|cache| &mut cache.0);
-    let manifold = manifold::contacts(&SupportOf(a), &SupportOf(b), &normal, slop, cache, max)?;
+    let manifold = manifold::contacts(
+        &support_of(a),
+        &support_of(b),
+        &normal,
+        slop.into(),
+        cache,
+        max,
+    )?;
     let mut count = 0;
     for (out, contact) in room.iter_mut().zip(manifold.iter()) {
         *out = Contact {
@@ -613,7 +465,7 @@ query!(
     /// # Errors
     /// A `dir` that is zero or not finite, and as [`penetration`].
     penetration_along(dir),
-    Solver::Along(dir)
+    Solver::Along(from_real(dir))
 );
 
 query!(
@@ -623,7 +475,7 @@ query!(
     /// # Errors
     /// A `plane_normal` that is zero or not finite, and as [`penetration`].
     penetration_planar(plane_normal),
-    Solver::Planar(plane_normal)
+    Solver::Planar(from_real(plane_normal))
 );
 
 query!(
@@ -651,7 +503,7 @@ query!(
 /// assert!(ccd::check(&|d: [Real; 3]| d.map(|x| x * -0.5)).opposite);
 /// ```
 pub fn check<S: Shape + ?Sized>(shape: &S) -> Check {
-    check::check(&SupportOf(shape), shape.center().map(from_real).as_ref())
+    check::check(&support_of(shape), shape.center().map(from_real).as_ref())
 }
 
 /// Returns name, version and precision of the library: "warmccd 0.2.0 double".

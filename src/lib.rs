@@ -68,19 +68,20 @@ mod ladder;
 mod local;
 mod math;
 mod minkowski;
-mod paper;
+mod paper {
+    pub mod gao;
+}
 mod portal;
 mod query;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
 mod shapes;
-mod solver;
 mod trace;
 mod types;
 
 pub use api::{
     Check, Contact, Distance, DistanceOptions, Error, ManifoldCache, Penetration, Real, Settings,
-    Shape, Status, Want, Warm, check, contacts, implementation, intersect, penetration,
+    Shape, Status, Warm, check, contacts, implementation, intersect, penetration,
     penetration_along, penetration_incremental, penetration_local, penetration_planar,
     penetration_proven, signed_distance,
 };

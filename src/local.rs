@@ -580,8 +580,8 @@ mod tests {
     };
 
     const SETTINGS: Settings = Settings {
-        tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-4 },
         max_iterations: 1000,
+        ..Settings::new(if EPSILON < 1e-10 { 1e-7 } else { 1e-4 })
     };
 
     type Walked = Result<Penetration, Stop>;

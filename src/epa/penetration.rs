@@ -591,8 +591,8 @@ mod tests {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Penetration, Stop> {
         let settings = Settings {
-            tolerance: TOLERANCE,
             max_iterations: 1000,
+            ..Settings::new(TOLERANCE)
         };
         let request = EpaRequest {
             center,

@@ -3,9 +3,9 @@
 
 //! Allocates the memory of the largest polytopes: one block of C's heap, if a query needs it.
 //!
-//! A C callback may throw or longjmp over the frame of [`LargeBuffers`], which therefore has no destructor: its owner
-//! frees the block when the query returns, and a callback that unwinds leaks it. [`OwnedBuffers`] frees
-//! its block when it is dropped; it is for shapes in Rust, whose panics run destructors.
+//! A C callback may throw or longjmp over the frame of the block's owner, where nothing with a destructor may be alive:
+//! queries of C callers keep [`LargeBuffers`] in a `ManuallyDrop`, and a callback that unwinds leaks the block. Panics of
+//! shapes in Rust run the destructor.
 
 use core::ptr::NonNull;
 
@@ -16,16 +16,6 @@ use crate::minkowski::support::Fault;
 /// The block of one query; empty until the query asks for it.
 #[derive(Default)]
 pub struct LargeBuffers(Option<NonNull<EpaBuffers>>);
-
-impl LargeBuffers {
-    /// Frees the block, if any.
-    pub fn free(&mut self) {
-        if let Some(block) = self.0.take() {
-            // SAFETY: [heap]; the block is no longer used.
-            unsafe { free(block.as_ptr().cast()) };
-        }
-    }
-}
 
 impl Arena for LargeBuffers {
     fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
@@ -43,18 +33,11 @@ impl Arena for LargeBuffers {
     }
 }
 
-/// A source of buffers that frees its block when it is dropped.
-#[derive(Default)]
-pub struct OwnedBuffers(LargeBuffers);
-
-impl Arena for OwnedBuffers {
-    fn buffers(&mut self) -> Result<&mut EpaBuffers, Fault> {
-        self.0.buffers()
-    }
-}
-
-impl Drop for OwnedBuffers {
+impl Drop for LargeBuffers {
     fn drop(&mut self) {
-        self.0.free();
+        if let Some(block) = self.0 {
+            // SAFETY: [heap]; the block is no longer used.
+            unsafe { free(block.as_ptr().cast()) };
+        }
     }
 }

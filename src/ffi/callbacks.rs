@@ -3,14 +3,14 @@
 
 //! Converts a C caller's objects and settings to the types of the solvers.
 
-use core::ffi::{c_ulong, c_void};
+use core::ffi::{c_uint, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
-use crate::math::{ITERATION_CAP, Real, Vec3, from_real};
-use crate::minkowski::support::{MinkowskiDifference, SupportMap, SupportPoint};
-use crate::query::Pair;
-use crate::solver::Solver;
-use crate::types::{Settings, Want};
+use super::warm::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, CCD_WANT_POS};
+use crate::math::{Vec3, from_real};
+use crate::minkowski::support::{Fault, SupportMap};
+use crate::query::{Pair, Solver};
+use crate::types::Settings;
 
 /// An object whose support function is a C callback.
 #[derive(Clone, Copy)]
@@ -63,9 +63,6 @@ pub enum Interface {
     Extension,
 }
 
-/// The tolerance of CCD_INIT, metres: used by libccd's calls if the caller's is negative or NaN.
-const DEFAULT_TOLERANCE: Real = 1e-4;
-
 /// The arguments that every query takes from a C caller.
 #[derive(Clone, Copy)]
 pub struct QueryArgs {
@@ -95,16 +92,16 @@ impl QueryArgs {
         ))
     }
 
-    /// Returns the difference of the centers, finite or not; `None` if a callback is NULL.
+    /// Returns the two centers, finite or not; `None` if a callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
-    unsafe fn center(&self) -> Option<SupportPoint> {
+    #[inline(always)]
+    unsafe fn centers(&self) -> Option<[Vec3; 2]> {
         // SAFETY: [inputs]; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
         // SAFETY: [callbacks].
-        let (v1, v2) = unsafe { (center_of(center1, self.obj1), center_of(center2, self.obj2)) };
-        Some(SupportPoint { v: v1 - v2, v1, v2 })
+        Some(unsafe { [center_of(center1, self.obj1), center_of(center2, self.obj2)] })
     }
 
     /// Returns the direction of the first_dir callback, not normalised; `None` if the callback
@@ -121,42 +118,42 @@ impl QueryArgs {
         Some(dir.into())
     }
 
-    /// Returns the caller's settings, with the tolerance that the solver reads; `None` if `ccd` is NULL. If the tolerance
-    /// is negative or NaN, libccd's calls use [`DEFAULT_TOLERANCE`]; those of the extension return `None`.
+    /// Returns the caller's settings, with the tolerance that the solver reads. If that is negative or NaN, libccd's calls
+    /// use CCD_INIT's. `want`: CCD_WANT_ flags.
     ///
     /// # Safety
-    /// \[inputs\] of the module contract.
+    /// \[inputs\] of the module contract; `ccd` is not NULL.
     #[inline(always)]
-    pub unsafe fn settings(&self, interface: Interface, solver: &Solver) -> Option<Settings> {
-        if self.ccd.is_null() {
-            return None;
-        }
+    unsafe fn settings(&self, interface: Interface, solver: &Solver, want: c_uint) -> Settings {
         // SAFETY: [inputs]; only the fields named are read.
-        unsafe {
-            let mut tolerance = match solver {
+        let (tolerance, max_iterations) = unsafe {
+            let tolerance = match solver {
+                Solver::Intersect => 0.0,
                 Solver::Proven => (*self.ccd).epa_tolerance,
                 Solver::Distance(_) => (*self.ccd).dist_tolerance,
                 _ => (*self.ccd).mpr_tolerance,
             };
+            (tolerance, (*self.ccd).max_iterations)
+        };
+        let default = Settings::default();
+        Settings {
             // Negated, so that NaN counts as negative.
-            if !(tolerance >= 0.0) {
-                if interface == Interface::Extension {
-                    return None;
-                }
-                tolerance = DEFAULT_TOLERANCE;
-            }
-            let max: c_ulong = (*self.ccd).max_iterations;
-            #[allow(clippy::unnecessary_cast)] // c_ulong has 32 bits on some platforms
-            let max_iterations = ITERATION_CAP.min(max as u64);
-            Some(Settings {
-                tolerance: tolerance.into(),
-                max_iterations,
-            })
+            tolerance: if interface != Interface::Extension && !(tolerance >= 0.0) {
+                default.tolerance
+            } else {
+                tolerance.into()
+            },
+            max_iterations: max_iterations as u64,
+            // A distance has no position.
+            pos: want & CCD_WANT_POS != 0 && !matches!(solver, Solver::Distance(_)),
+            points: want & CCD_WANT_POINTS != 0,
         }
     }
 
-    /// Returns the pair with its centers or first direction; `None` if `ccd` or a callback that the call requires is
-    /// NULL, or a center is not finite.
+    /// Returns the pair with the caller's settings and its centers or first direction. `want`: CCD_WANT_ flags.
+    ///
+    /// # Errors
+    /// [`Fault::Missing`]: `ccd` or a callback that the call requires is NULL, a flag is unknown, and as [`Pair::new`].
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
@@ -164,30 +161,25 @@ impl QueryArgs {
     pub unsafe fn pair(
         &self,
         interface: Interface,
-        settings: Settings,
-        want: Want,
-    ) -> Option<Pair<Object, Object>> {
-        // SAFETY: the caller's guarantees are those of the callees.
+        solver: &Solver,
+        want: c_uint,
+    ) -> Result<Pair<Object, Object>, Fault> {
+        if want & !CCD_WANT_ALL != 0 {
+            return Err(Fault::Missing);
+        }
+        // SAFETY: the caller's guarantees are those of the callees; `objects` has found that ccd is not NULL.
         unsafe {
-            let (obj1, obj2) = self.objects()?;
+            let objects = self.objects().ok_or(Fault::Missing)?;
             let (centers, first_dir) = match interface {
-                Interface::Mpr => (Some(self.center()?), None),
-                Interface::Gjk => (None, Some(self.first_dir()?)),
-                Interface::Extension => match self.center() {
+                Interface::Mpr => (Some(self.centers().ok_or(Fault::Missing)?), None),
+                Interface::Gjk => (None, Some(self.first_dir().ok_or(Fault::Missing)?)),
+                Interface::Extension => match self.centers() {
                     None => (None, self.first_dir()),
                     centers => (centers, None),
                 },
             };
-            if centers.is_some_and(|c| !c.v.sum().is_finite()) {
-                return None;
-            }
-            Some(Pair {
-                difference: MinkowskiDifference::new(obj1, obj2),
-                centers,
-                first_dir,
-                settings,
-                want,
-            })
+            let settings = self.settings(interface, solver, want);
+            Pair::new(objects, centers, first_dir, &settings)
         }
     }
 }

@@ -7,9 +7,8 @@ use core::ffi::{c_int, c_void};
 use core::ptr::null_mut;
 
 use super::callbacks::{Interface, QueryArgs};
+use super::run::{intersect, libccd_penetration};
 use super::types::{ccd_t, ccd_vec3_t};
-use super::warm::intersect::intersect;
-use super::warm::libccd::{ccdMPRIntersectWarm, libccd_penetration};
 use crate::math::{Real, Vec3};
 
 /// Reports whether the objects overlap. Starts from the centers, which must lie in their objects.
@@ -25,7 +24,7 @@ pub unsafe extern "C-unwind" fn ccdMPRIntersect(
     ccd: *const ccd_t,
 ) -> c_int {
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { ccdMPRIntersectWarm(obj1, obj2, ccd, null_mut()) }
+    unsafe { intersect(QueryArgs { obj1, obj2, ccd }, Interface::Mpr, null_mut()) }
 }
 
 /// Reports whether the objects overlap. Starts from first_dir and calls no center.

@@ -9,10 +9,11 @@
 use core::ffi::{c_int, c_uint, c_void};
 
 use super::callbacks::QueryArgs;
+use super::run::fill;
 use super::types::ccd_t;
-use super::warm::penetration::{ccd_penetration_t, fill};
+use super::warm::penetration::ccd_penetration_t;
 use super::warm::state::ccd_warm_t;
-use crate::solver::Solver;
+use crate::query::Solver;
 
 /// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
 /// shortcut of its Section III-C. The result is sound: depth is the least support value evaluated, and an overlap is

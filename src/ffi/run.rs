@@ -1,43 +1,28 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Runs the queries of a C caller, and translates their ends to codes.
+//! Runs the queries of a C caller, stores its state and outputs, and translates the ends of queries to codes.
 
-use core::ffi::c_int;
+use core::ffi::{c_int, c_uint};
+use core::mem::ManuallyDrop;
 
 use super::arena::LargeBuffers;
 use super::callbacks::{Interface, QueryArgs};
-use super::warm::codes::{CCD_BAD_INPUT, CCD_MISS, CCD_NO_MEMORY};
+use super::types::ccd_vec3_t;
+use super::warm::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
+use super::warm::penetration::CCD_WANT_POS;
 use super::warm::state::{ccd_warm_t, read, store};
+use crate::math::Real;
 use crate::minkowski::support::Fault;
 use crate::minkowski::support_query::Stop;
-use crate::minkowski::warm_start::WarmStart;
-use crate::solver::Solver;
-use crate::trace;
-use crate::types::{Penetration, Want};
-
-/// Returns the extension's code of a query without a result.
-pub fn code_of(stop: &Stop) -> c_int {
-    match stop {
-        Stop::Separated(_) => CCD_MISS,
-        Stop::Fault(Fault::NoMemory) => CCD_NO_MEMORY,
-        Stop::Fault(_) => CCD_BAD_INPUT,
-    }
-}
-
-/// Returns libccd's code of a query without a result.
-pub fn libccd_code_of(stop: &Stop) -> c_int {
-    match stop {
-        Stop::Fault(Fault::NoMemory) => -2,
-        _ => -1,
-    }
-}
+use crate::query::Solver;
+use crate::types::{Penetration, Status};
 
 /// Runs a query with the caller's state, or a cold one where `warm` is NULL, and with memory that is allocated if the query
-/// needs it. Stores the new state unless there is a fault.
+/// needs it. Stores the new state unless there is a fault. `want`: CCD_WANT_ flags.
 ///
 /// # Errors
-/// As [`Solver::run`]; [`Fault::BadInput`] for an argument.
+/// As [`Pair::run`](crate::query::Pair::run) and [`QueryArgs::pair`].
 ///
 /// # Safety
 /// \[inputs\] and \[outputs\] of the module contract; nothing with a destructor is alive while callbacks run.
@@ -47,34 +32,102 @@ pub unsafe fn run_query(
     interface: Interface,
     solver: Solver,
     warm: *mut ccd_warm_t,
-    want: Want,
+    want: c_uint,
 ) -> Result<Penetration, Stop> {
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        let settings = args.settings(interface, &solver).ok_or(Fault::BadInput)?;
-        let pair = args
-            .pair(interface, settings, want)
-            .ok_or(Fault::BadInput)?;
-        let (mut state, mut buffers) = (read(warm), LargeBuffers::default());
-        let mut found = solver.run(&pair, &mut state, &mut buffers);
-        buffers.free();
-        if let Ok(hit) = &mut found {
-            hit.finish(pair.difference.supports(), want);
+        let pair = args.pair(interface, &solver, want)?;
+        let mut state = read(warm);
+        let mut buffers = ManuallyDrop::new(LargeBuffers::default());
+        let found = pair.run(solver, &mut state, &mut *buffers);
+        ManuallyDrop::drop(&mut buffers);
+        if !warm.is_null() && !matches!(found, Err(Stop::Fault(_))) {
+            state.note_separation(&found);
+            store(warm, &state);
         }
-        trace::end(found.as_ref().ok());
-        store_state(warm, state, &found);
         found
     }
 }
 
-/// Stores the state after a query unless there is a fault or `warm` is NULL.
+/// Runs a penetration query of one of libccd's interfaces and writes those outputs that are not NULL. Returns libccd's
+/// code.
 ///
 /// # Safety
-/// \[outputs\] of the module contract.
-pub unsafe fn store_state<R>(warm: *mut ccd_warm_t, mut state: WarmStart, found: &Result<R, Stop>) {
-    if !warm.is_null() && !matches!(found, Err(Stop::Fault(_))) {
-        state.note_separation(found);
-        // SAFETY: the caller's guarantees are those of the callee.
-        unsafe { store(warm, &state) };
+/// As [`run_query`].
+#[inline(always)]
+pub unsafe fn libccd_penetration(
+    args: QueryArgs,
+    interface: Interface,
+    warm: *mut ccd_warm_t,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) -> c_int {
+    let solver = match interface {
+        Interface::Gjk => Solver::Proven,
+        Interface::Mpr | Interface::Extension => Solver::Global,
+    };
+    let want = if pos.is_null() { 0 } else { CCD_WANT_POS };
+    // SAFETY: the caller's guarantees are those of the callee; [outputs].
+    unsafe {
+        let hit = match run_query(args, interface, solver, warm, want) {
+            Ok(hit) => hit,
+            Err(Stop::Fault(Fault::NoMemory)) => return -2,
+            Err(_) => return -1,
+        };
+        if let Some(depth) = depth.as_mut() {
+            *depth = hit.depth as Real;
+        }
+        if let Some(dir) = dir.as_mut() {
+            *dir = hit.dir.into();
+        }
+        if let Some(pos) = pos.as_mut() {
+            *pos = hit.pos.into();
+        }
+    }
+    0
+}
+
+/// Tests a pair for overlap with the caller's state. Returns 1 or 0: a fault counts as no overlap.
+///
+/// # Safety
+/// As [`run_query`].
+pub unsafe fn intersect(args: QueryArgs, interface: Interface, warm: *mut ccd_warm_t) -> c_int {
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { run_query(args, interface, Solver::Intersect, warm, 0) }
+        .is_ok()
+        .into()
+}
+
+/// Runs a query of the extension and fills `out`. Returns the extension's code.
+///
+/// # Safety
+/// As [`run_query`].
+#[inline(always)]
+pub unsafe fn fill<T: From<Penetration>>(
+    args: QueryArgs,
+    solver: Solver,
+    warm: *mut ccd_warm_t,
+    want: c_uint,
+    out: *mut T,
+) -> c_int {
+    if out.is_null() {
+        return CCD_BAD_INPUT;
+    }
+    let is_distance = matches!(solver, Solver::Distance(_));
+    // SAFETY: the caller's guarantees are those of the callee.
+    match unsafe { run_query(args, Interface::Extension, solver, warm, want) } {
+        Ok(found) => {
+            // SAFETY: [outputs].
+            unsafe { *out = found.into() };
+            match found.status {
+                Status::Converged if is_distance && !(found.depth > 0.0) => CCD_MISS,
+                Status::Converged => CCD_HIT,
+                _ => CCD_LIMIT,
+            }
+        }
+        Err(Stop::Separated(_)) => CCD_MISS,
+        Err(Stop::Fault(Fault::NoMemory)) => CCD_NO_MEMORY,
+        Err(Stop::Fault(_)) => CCD_BAD_INPUT,
     }
 }

@@ -38,7 +38,7 @@
 //! and status may be CCD_STATUS_INCONSISTENT_SUPPORT; ccdCheck finds such faults.
 
 use super::types::ccd_vec3_t;
-use crate::math::{Vec3, unit};
+use crate::math::Vec3;
 
 pub mod check;
 pub mod codes;
@@ -56,11 +56,11 @@ pub use {
     penetration::*, special::*, state::*,
 };
 
-/// Returns the unit vector along `dir`; `None` when that is NULL, zero or not finite.
+/// Returns the caller's direction; zero, which is no direction, where `dir` is NULL.
 ///
 /// # Safety
 /// \[inputs\] of the module contract.
-unsafe fn unit_of(dir: *const ccd_vec3_t) -> Option<Vec3> {
+unsafe fn direction(dir: *const ccd_vec3_t) -> Vec3 {
     // SAFETY: [inputs].
-    unit(&unsafe { *dir.as_ref()? }.into())
+    unsafe { dir.as_ref() }.copied().unwrap_or_default().into()
 }

@@ -73,7 +73,7 @@ impl Enclosing {
 ///
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
-#[inline]
+#[inline(always)]
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     interior: Option<&SupportPoint>,

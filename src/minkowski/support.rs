@@ -63,16 +63,27 @@ pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N])
     )
 }
 
-/// Cause of a query without a result.
+/// Cause of a query without a result. The caller's state is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Fault {
     /// A support function returned a point that is not finite, or the fourth power of |v1 − v2|
     /// overflows (above 1e77 m).
     NonFinite,
-    /// An argument, a callback or a center is missing or invalid.
-    BadInput,
     /// An allocation failed.
     NoMemory,
+    /// An argument or a callback is missing, or a flag is unknown.
+    Missing,
+    /// The tolerance is negative or NaN.
+    Tolerance,
+    /// A center is not finite.
+    Center,
+    /// A direction is zero or not finite.
+    Direction,
+    /// A margin is negative or not finite, or the largest distance is negative or NaN.
+    DistanceOptions,
+    /// The slop is negative or NaN, or there is no room for a contact.
+    ContactOptions,
 }
 
 /// D = obj1 − obj2, evaluated by its support function; counts the calls. Variables of this type are

@@ -20,7 +20,7 @@
 
 use crate::epa::buffers::Arena;
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
-use crate::math::{EPSILON, larger, lesser};
+use crate::math::{EPSILON, Real, larger, lesser};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
@@ -28,21 +28,25 @@ use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
 use crate::types::{Penetration, Settings, Status};
 
-/// The radii of the balls added to the objects, and the distance of interest.
-#[derive(Clone, Copy, Debug)]
-pub struct Margins {
-    /// Radius of the ball around obj1, metres, not negative.
-    pub margin1: f64,
-    /// Radius of the ball around obj2, metres, not negative.
-    pub margin2: f64,
-    /// The search ends when the distance is proven to be greater than this, metres.
-    pub max_distance: f64,
+/// Margins and largest distance of [`signed_distance`](crate::signed_distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DistanceOptions {
+    /// Radius of a ball added to the first shape, metres, not negative.
+    pub margin1: Real,
+    /// Radius of a ball added to the second shape, metres, not negative.
+    pub margin2: Real,
+    /// The search ends when the distance is proven to be greater than this, metres, not negative.
+    pub max_distance: Real,
 }
 
-impl Margins {
-    /// Returns the sum of the margins, metres.
-    fn sum(&self) -> f64 {
-        self.margin1 + self.margin2
+impl Default for DistanceOptions {
+    /// Returns options without margins and without a largest distance.
+    fn default() -> Self {
+        DistanceOptions {
+            margin1: 0.0,
+            margin2: 0.0,
+            max_distance: Real::INFINITY,
+        }
     }
 }
 
@@ -50,25 +54,32 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Computes the signed distance of the objects with their margins, from the state of the last query.
     ///
     /// # Errors
-    /// [`Stop::Fault`].
+    /// [`Stop::Fault`], also for an option that is invalid.
+    #[inline(always)]
     pub fn signed_distance(
         &self,
-        margins: &Margins,
+        options: DistanceOptions,
         state: &mut WarmStart,
         arena: &mut dyn Arena,
     ) -> Result<Penetration, Stop> {
+        let (margin1, margin2) = (f64::from(options.margin1), f64::from(options.margin2));
+        let is_finite = margin1 + margin2 < Real::MAX.into();
+        if !(margin1 >= 0.0 && margin2 >= 0.0 && is_finite && options.max_distance >= 0.0) {
+            return Err(Fault::DistanceOptions.into());
+        }
         if state.is_overlap() {
             if let Some(hit) = self.depth(state, arena)? {
-                return Ok(with_margins(hit, margins));
+                return Ok(with_margins(hit, [margin1, margin2]));
             }
         }
-        let (mut cores, radius, mut contact_eps) = self.find_cores(margins, state)?;
+        let (mut cores, radius, mut contact_eps) =
+            self.find_cores(margin1 + margin2, options.max_distance.into(), state)?;
         // Without a separating plane the overlap test decides, however close the bounds are.
         let is_at_limit = matches!(cores.status, Status::IterationLimit | Status::SupportLimit);
         if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
             *state = WarmStart::towards(cores.normal);
             if let Some(hit) = self.depth(state, arena)? {
-                return Ok(with_margins(hit, margins));
+                return Ok(with_margins(hit, [margin1, margin2]));
             }
             // The overlap test found no overlap. Use its axis, even if the support value there is positive within
             // rounding, and keep the witness points, which are rounded too.
@@ -79,12 +90,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let is_met = cores.upper <= larger(contact_eps, self.settings.tolerance);
             cores.status = Status::Rounding.unless(is_met);
         }
-        let found = separated_distance(&cores, contact_eps, self.settings.tolerance, margins);
+        let tolerance = self.settings.tolerance;
+        let found = separated_distance(&cores, contact_eps, tolerance, [margin1, margin2]);
         *state = WarmStart::separated(cores.normal, larger(-found.depth, 0.0), radius);
         Ok(found)
     }
 
     /// Finds the penetration depth of the cores. `None` if they are separated; the state then has the separating axis.
+    #[inline(always)]
     fn depth(
         &self,
         state: &mut WarmStart,
@@ -95,25 +108,27 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if_overlapping(found)
     }
 
-    /// Finds the closest points of the cores, from the separating axis of the state. Returns them with the radii of the
+    /// Finds the closest points of the cores, from the separating axis of the state. `margin`: the sum of both. Returns them with the radii of the
     /// sphere fits and the contact epsilon, metres. Not inlined, so that its stack frame is released before the depth is
     /// computed.
     #[inline(never)]
     fn find_cores(
         &self,
-        margins: &Margins,
+        margin: f64,
+        max_distance: f64,
         state: &WarmStart,
     ) -> Result<(ClosestPoints, [f64; 2], f64), Fault> {
         let Settings {
             tolerance,
             max_iterations,
+            ..
         } = self.settings;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut fit = SphereFit::from_radius(state.radius);
         let goal = Goal {
             tolerance,
-            margin: margins.sum(),
-            max_distance: margins.max_distance,
+            margin,
+            max_distance,
             max_samples: max_iterations,
         };
         let axis = state.separating_axis();
@@ -124,26 +139,27 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 }
 
 /// Adds the margins to the result of the cores.
-fn with_margins(cores: Penetration, margins: &Margins) -> Penetration {
-    let (n, margin) = (cores.normal, margins.sum());
+fn with_margins(cores: Penetration, [margin1, margin2]: [f64; 2]) -> Penetration {
+    let (n, margin) = (cores.normal, margin1 + margin2);
     let depth = cores.depth + margin;
     Penetration {
         depth,
         depth_lower: lesser(cores.depth_lower + margin, depth),
-        point1: cores.point1 + n * margins.margin1,
-        point2: cores.point2 - n * margins.margin2,
+        point1: cores.point1 + n * margin1,
+        point2: cores.point2 - n * margin2,
         ..cores
     }
 }
 
 /// Returns the signed distance of objects with separated cores. `contact_eps`, `tolerance`: metres.
+#[inline(always)]
 fn separated_distance(
     cores: &ClosestPoints,
     contact_eps: f64,
     tolerance: f64,
-    margins: &Margins,
+    [margin1, margin2]: [f64; 2],
 ) -> Penetration {
-    let margin = margins.sum();
+    let margin = margin1 + margin2;
     // The witness points are on the line through the closest points of the cores; if the cores touch, that
     // line is rounding error, and the normal replaces it.
     let along = if cores.upper > contact_eps {
@@ -166,8 +182,8 @@ fn separated_distance(
         depth_lower: lesser(depth_lower, depth),
         dir: cores.normal,
         normal: cores.normal,
-        point1: cores.point1 + along * margins.margin1,
-        point2: cores.point2 - along * margins.margin2,
+        point1: cores.point1 + along * margin1,
+        point2: cores.point2 - along * margin2,
         iterations: cores.iterations,
         status,
         ..Penetration::default()

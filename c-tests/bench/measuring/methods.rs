@@ -259,7 +259,7 @@ pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t
 
 /// Runs the paper's algorithms, which match the published implementation but return the portal's normal.
 fn gao(libraries: &Libraries, until: Until, start: Start, tolerance: f64) -> Query<'static> {
-    let settings = Settings { tolerance, max_iterations: 10_000 };
+    let settings = Settings { max_iterations: 10_000, ..Settings::new(tolerance) };
     let callbacks = libraries.callbacks;
     let mut last = None;
     Box::new(move |pair| {

@@ -7,7 +7,7 @@
 #![allow(unsafe_code, reason = "calls of the C interface")]
 
 use ccd::internals::ffi::*;
-use ccd::{Contact, DistanceOptions, Error, Penetration, Real, Settings, Shape, Status, Want, Warm};
+use ccd::{Contact, DistanceOptions, Error, Penetration, Real, Settings, Shape, Status, Warm};
 use std::ffi::{c_int, c_uint, c_ulong, c_void};
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -82,9 +82,9 @@ pub fn in_c(settings: &Settings, centred: bool) -> ccd_t {
         center1: centre,
         center2: centre,
         max_iterations: settings.max_iterations as _,
-        epa_tolerance: settings.tolerance,
-        mpr_tolerance: settings.tolerance,
-        dist_tolerance: settings.tolerance,
+        epa_tolerance: settings.tolerance as Real,
+        mpr_tolerance: settings.tolerance as Real,
+        dist_tolerance: settings.tolerance as Real,
     }
 }
 
@@ -166,10 +166,10 @@ fn results_are_bitwise_those_of_c() {
     let (mut hits, mut misses) = (0, 0);
     for round in 0..if cfg!(miri) { 1 } else { 200 } {
         let centred = round % 2 == 0;
-        let want = Want { pos: round % 3 != 0, points: round % 5 != 0 };
-        let bits = [(want.pos, CCD_WANT_POS), (want.points, CCD_WANT_POINTS)];
+        let (pos, points) = (round % 3 != 0, round % 5 != 0);
+        let bits = [(pos, CCD_WANT_POS), (points, CCD_WANT_POINTS)];
         let bits = bits.iter().filter(|b| b.0).map(|b| b.1).sum();
-        let settings = Settings { want, ..Settings::new(1e-5) };
+        let settings = Settings { pos, points, ..Settings::new(1.0 / 65536.0) };
         let (mut a, mut b) = (r.shape(0.5, centred), r.shape(0.8, centred));
         let c = in_c(&settings, centred);
         let mut warm = Warm::guess(DIR);
@@ -284,7 +284,7 @@ impl Arguments {
             let mut warm = before;
             let error = call(&mut warm).err();
             assert_eq!(error.is_some(), is_rejected_by(name), "{name}: {what}");
-            assert!(matches!(error, None | Some(Error::BadInput(_))), "{name}, {what}: {error:?}");
+            assert_ne!(error, Some(Error::NoMemory), "{name}, {what}");
             assert!(error.is_none() || format!("{warm:?}") == format!("{before:?}"), "{name}, {what}");
         };
         for call in &CALLS {
@@ -301,12 +301,13 @@ impl Arguments {
 #[test]
 fn invalid_arguments_are_rejected() {
     let (infinite, nan) = (Real::INFINITY, Real::NAN);
-    for length in [-1e-9, nan, Real::NEG_INFINITY, 0.0, infinite] {
+    for tolerance in [-1e-9, f64::NAN, f64::NEG_INFINITY, 0.0, f64::INFINITY] {
+        let length = tolerance as Real;
         // A length may be zero or infinite; a margin is finite.
         let is_invalid = length.is_nan() || length < 0.0;
         let if_invalid = |names: &'static [&str]| if is_invalid { names } else { &[] };
         let mut q = valid();
-        q.settings.tolerance = length;
+        q.settings.tolerance = tolerance;
         q.assert_rejected_by(if_invalid(&["penetration", "distance"]), "tolerance");
         Arguments { slop: length, ..valid() }.assert_rejected_by(if_invalid(&["contacts"]), "slop");
         for field in 0..3 {
@@ -339,7 +340,7 @@ fn invalid_arguments_are_rejected() {
 fn errors_name_the_argument() {
     let q = valid();
     let [a, b] = q.bodies();
-    let result = ccd::penetration(a, b, &Settings::new(Real::NAN), None);
+    let result = ccd::penetration(a, b, &Settings::new(f64::NAN), None);
     let error: Box<dyn std::error::Error> = result.expect_err("a NaN").into();
     assert_eq!(error.to_string(), "the tolerance is negative or NaN");
 }

@@ -8,10 +8,10 @@ use core::ffi::{c_int, c_uint, c_void};
 use super::super::callbacks::QueryArgs;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
-use super::unit_of;
+use super::direction;
 use crate::contact::manifold;
 use crate::contact::manifold_cache::ManifoldCache;
-use crate::math::Real;
+use crate::math::{Real, unit};
 
 /// One point of a contact manifold.
 #[repr(C)]
@@ -105,8 +105,8 @@ pub unsafe extern "C-unwind" fn ccdContacts(
         return CCD_BAD_INPUT;
     }
     // SAFETY: [inputs].
-    let (normal, objects) = unsafe { (unit_of(normal), QueryArgs { obj1, obj2, ccd }.objects()) };
-    let (Some(normal), Some((one, two))) = (normal, objects) else {
+    let (normal, objects) = unsafe { (direction(normal), QueryArgs { obj1, obj2, ccd }.objects()) };
+    let (Some(normal), Some((one, two))) = (unit(&normal), objects) else {
         return CCD_BAD_INPUT;
     };
     let max = (max as usize).min(manifold::MAX_CONTACTS);

@@ -5,16 +5,14 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{Interface, QueryArgs};
-use super::super::run::{code_of, run_query};
+use super::super::callbacks::QueryArgs;
+use super::super::run::fill;
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS};
-use super::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS};
 use super::state::ccd_warm_t;
 use crate::math::Real;
-use crate::query::signed_distance::Margins;
-use crate::solver::Solver;
-use crate::types::{Penetration, Status, Want};
+use crate::query::Solver;
+use crate::query::signed_distance::DistanceOptions;
+use crate::types::Penetration;
 
 /// Result of ccdSignedDistance. A field that was not requested is zero.
 #[repr(C)]
@@ -83,42 +81,12 @@ pub unsafe extern "C-unwind" fn ccdSignedDistance(
     want: c_uint,
     out: *mut ccd_distance_t,
 ) -> c_int {
-    let is_valid = margin1 >= 0.0
-        && margin2 >= 0.0
-        && max_distance >= 0.0
-        && margin1 + margin2 < Real::INFINITY;
-    if out.is_null() || want & !CCD_WANT_ALL != 0 || !is_valid {
-        return CCD_BAD_INPUT;
-    }
-    let margins = Margins {
-        margin1: margin1.into(),
-        margin2: margin2.into(),
-        max_distance: max_distance.into(),
-    };
     let args = QueryArgs { obj1, obj2, ccd };
-    let wanted = Want {
-        pos: false,
-        points: want & CCD_WANT_POINTS != 0,
+    let options = DistanceOptions {
+        margin1,
+        margin2,
+        max_distance,
     };
     // SAFETY: the caller's guarantees are those of the callee.
-    match unsafe {
-        run_query(
-            args,
-            Interface::Extension,
-            Solver::Distance(margins),
-            warm,
-            wanted,
-        )
-    } {
-        Ok(found) => {
-            // SAFETY: [outputs].
-            unsafe { *out = found.into() };
-            match found.status {
-                Status::Converged if found.depth > 0.0 => CCD_HIT,
-                Status::Converged => CCD_MISS,
-                _ => CCD_LIMIT,
-            }
-        }
-        Err(stop) => code_of(&stop),
-    }
+    unsafe { fill(args, Solver::Distance(options), warm, want, out) }
 }

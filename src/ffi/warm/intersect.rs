@@ -6,31 +6,9 @@
 use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{Interface, QueryArgs};
-use super::super::run::store_state;
+use super::super::run::intersect;
 use super::super::types::ccd_t;
-use super::state::{ccd_warm_t, read};
-use crate::types::{Settings, Want};
-
-/// Tests a pair for overlap with the caller's state. Returns 1 or 0: a fault counts as no overlap.
-///
-/// # Safety
-/// \[inputs\] and \[outputs\] of the module contract.
-pub(in crate::ffi) unsafe fn intersect(
-    args: QueryArgs,
-    interface: Interface,
-    warm: *mut ccd_warm_t,
-) -> c_int {
-    // SAFETY: the caller's guarantees are those of the callees.
-    unsafe {
-        let Some(pair) = args.pair(interface, Settings::UNREAD, Want::NOTHING) else {
-            return 0;
-        };
-        let mut state = read(warm);
-        let found = pair.intersect(&mut state);
-        store_state(warm, state, &found);
-        c_int::from(found.is_ok())
-    }
-}
+use super::state::ccd_warm_t;
 
 /// Reports whether the objects overlap.
 ///

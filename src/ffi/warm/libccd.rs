@@ -7,54 +7,10 @@
 use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{Interface, QueryArgs};
-use super::super::run::{libccd_code_of, run_query};
+use super::super::run::{intersect, libccd_penetration};
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::intersect::intersect;
 use super::state::ccd_warm_t;
 use crate::math::Real;
-use crate::solver::Solver;
-use crate::types::Want;
-
-/// Runs the penetration query of one of libccd's interfaces and writes those outputs that are not NULL. Returns libccd's
-/// code.
-///
-/// # Safety
-/// As [`run_query`].
-#[inline(always)]
-pub(in crate::ffi) unsafe fn libccd_penetration(
-    args: QueryArgs,
-    interface: Interface,
-    warm: *mut ccd_warm_t,
-    depth: *mut Real,
-    dir: *mut ccd_vec3_t,
-    pos: *mut ccd_vec3_t,
-) -> c_int {
-    let solver = match interface {
-        Interface::Gjk => Solver::Proven,
-        Interface::Mpr | Interface::Extension => Solver::Global,
-    };
-    let want = Want {
-        pos: !pos.is_null(),
-        points: false,
-    };
-    // SAFETY: the caller's guarantees are those of the callee; [outputs].
-    unsafe {
-        let hit = match run_query(args, interface, solver, warm, want) {
-            Ok(hit) => hit,
-            Err(stop) => return libccd_code_of(&stop),
-        };
-        if let Some(depth) = depth.as_mut() {
-            *depth = hit.depth as Real;
-        }
-        if let Some(dir) = dir.as_mut() {
-            *dir = hit.dir.into();
-        }
-        if let Some(pos) = pos.as_mut() {
-            *pos = hit.pos.into();
-        }
-    }
-    0
-}
 
 /// Computes the penetration depth as ccdMPRPenetration does, with a state.
 ///

@@ -5,14 +5,13 @@
 
 use core::ffi::{c_int, c_uint, c_ulong, c_void};
 
-use super::super::callbacks::{Interface, QueryArgs};
-use super::super::run::{code_of, run_query};
+use super::super::callbacks::QueryArgs;
+use super::super::run::fill;
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT};
 use super::state::ccd_warm_t;
 use crate::math::{Real, lower_to_real};
-use crate::solver::Solver;
-use crate::types::{Penetration, Status, Want};
+use crate::query::Solver;
+use crate::types::Penetration;
 
 /// Requests pos. Costs 1 to 3 support points on average, k for a face of k > 4 corners, of both
 /// objects where neither's face contains the other's; at most 20. May call one support function
@@ -77,39 +76,6 @@ impl From<Penetration> for ccd_penetration_t {
             iterations: hit.iterations as c_ulong,
             status: hit.status as c_int,
         }
-    }
-}
-
-/// Runs a penetration query of the extension and fills `out`. Returns the extension's code.
-///
-/// # Safety
-/// As [`run_query`].
-#[inline(always)]
-pub(in crate::ffi) unsafe fn fill(
-    args: QueryArgs,
-    solver: Solver,
-    warm: *mut ccd_warm_t,
-    want: c_uint,
-    out: *mut ccd_penetration_t,
-) -> c_int {
-    if out.is_null() || want & !CCD_WANT_ALL != 0 {
-        return CCD_BAD_INPUT;
-    }
-    let wanted = Want {
-        pos: want & CCD_WANT_POS != 0,
-        points: want & CCD_WANT_POINTS != 0,
-    };
-    // SAFETY: the caller's guarantees are those of the callee.
-    match unsafe { run_query(args, Interface::Extension, solver, warm, wanted) } {
-        Ok(hit) => {
-            // SAFETY: [outputs].
-            unsafe { *out = hit.into() };
-            match hit.status {
-                Status::Converged => CCD_HIT,
-                _ => CCD_LIMIT,
-            }
-        }
-        Err(stop) => code_of(&stop),
     }
 }
 

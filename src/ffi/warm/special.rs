@@ -6,12 +6,12 @@
 use core::ffi::{c_int, c_uint, c_void};
 
 use super::super::callbacks::QueryArgs;
+use super::super::run::fill;
 use super::super::types::{ccd_t, ccd_vec3_t};
-use super::codes::CCD_BAD_INPUT;
-use super::penetration::{ccd_penetration_t, fill};
+use super::direction;
+use super::penetration::ccd_penetration_t;
 use super::state::ccd_warm_t;
-use super::unit_of;
-use crate::solver::Solver;
+use crate::query::Solver;
 
 /// Computes a local minimum of the penetration depth by a local search from the state's direction.
 /// Faster than ccdPenetration if that direction is roughly right; from a distant one it may find
@@ -80,12 +80,7 @@ pub unsafe extern "C-unwind" fn ccdPenetrationAlong(
 ) -> c_int {
     let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callees.
-    unsafe {
-        match unit_of(dir) {
-            Some(dir) => fill(args, Solver::Along(dir), warm, want, out),
-            None => CCD_BAD_INPUT,
-        }
-    }
+    unsafe { fill(args, Solver::Along(direction(dir)), warm, want, out) }
 }
 
 /// Computes a local minimum of the penetration depth over the directions in a plane, for objects
@@ -110,9 +105,12 @@ pub unsafe extern "C-unwind" fn ccdPenetrationPlanar(
     let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callees.
     unsafe {
-        match unit_of(plane_normal) {
-            Some(normal) => fill(args, Solver::Planar(normal), warm, want, out),
-            None => CCD_BAD_INPUT,
-        }
+        fill(
+            args,
+            Solver::Planar(direction(plane_normal)),
+            warm,
+            want,
+            out,
+        )
     }
 }

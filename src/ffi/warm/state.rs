@@ -6,6 +6,7 @@
 use core::ffi::c_uint;
 
 use super::super::types::ccd_vec3_t;
+use super::direction;
 use crate::minkowski::warm_start::WarmStart;
 
 /// Number of reals in a ccd_warm_t.
@@ -70,13 +71,7 @@ pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdWarmGuess(warm: *mut ccd_warm_t, dir: *const ccd_vec3_t) {
     // SAFETY: [inputs], [outputs].
-    unsafe {
-        let guess = match dir.as_ref() {
-            Some(dir) => WarmStart::guess(&(*dir).into()),
-            None => WarmStart::COLD,
-        };
-        store(warm, &guess);
-    }
+    unsafe { store(warm, &WarmStart::guess(&direction(dir))) };
 }
 
 /// Converts a state of the pair (obj1, obj2) to one of (obj2, obj1), for a caller who keeps one

@@ -8,8 +8,8 @@ mod search {
     use crate::shapes::{Random, ball, capsule, corners, difference, ellipsoid, hull, placed};
 
     const SETTINGS: Settings = Settings {
-        tolerance: if EPSILON < 1e-10 { 1e-7 } else { 1e-5 },
         max_iterations: 20_000,
+        ..Settings::new(if EPSILON < 1e-10 { 1e-7 } else { 1e-5 })
     };
 
     fn solve<A: SupportMap, B: SupportMap>(
@@ -250,7 +250,7 @@ mod search {
             let md = difference(ball(center, 0.5), ball(Vec3::zeros(), 0.4));
             let settings = Settings {
                 max_iterations,
-                tolerance: 1e-9,
+                ..Settings::new(1e-9)
             };
             let start = r.direction();
             let hit = penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap();
@@ -435,8 +435,8 @@ mod planar {
     const TAU: f64 = core::f64::consts::TAU as f64;
 
     const SETTINGS: Settings = Settings {
-        tolerance: if EPSILON < 1e-10 { 1e-9 } else { 1e-5 },
         max_iterations: 2000,
+        ..Settings::new(if EPSILON < 1e-10 { 1e-9 } else { 1e-5 })
     };
 
     /// Returns a random rotation, the axes x, y and the normal m of a plane, and a point of the plane.
