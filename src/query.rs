@@ -43,7 +43,9 @@ use crate::types::{Penetration, Settings, Status};
 pub enum Solver {
     /// [`Pair::intersect`]: whether the objects overlap; its result is blank.
     Intersect,
-    /// [`Pair::penetration`]: the global minimum within 0.1 %.
+    /// The global minimum of the depth within the larger of the tolerance and 0.1 %, with at most
+    /// [`MAX_DEFAULT_POINTS`] support points; if these do not suffice, a local search improves the depth. Assumes that
+    /// the centers lie in their objects.
     Global,
     /// [`Pair::proven`]: the global minimum within the tolerance, without the centers.
     Proven,
@@ -57,6 +59,21 @@ pub enum Solver {
     Incremental,
     /// [`Pair::signed_distance`] of the objects with these margins.
     Distance(DistanceOptions),
+}
+
+impl Solver {
+    /// Returns the solver with a unit direction.
+    ///
+    /// # Errors
+    /// [`Fault::Direction`].
+    #[inline(always)]
+    fn normalised(self) -> Result<Self, Fault> {
+        Ok(match self {
+            Solver::Along(dir) => Solver::Along(direction(&dir)?),
+            Solver::Planar(normal) => Solver::Planar(direction(&normal)?),
+            solver => solver,
+        })
+    }
 }
 
 /// Returns a caller's direction as a unit vector.
@@ -122,9 +139,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut WarmStart,
         arena: &mut dyn Arena,
     ) -> Result<Penetration, Stop> {
+        let solver = solver.normalised()?;
+        // A distance starts from the axis.
+        if !matches!(solver, Solver::Distance(_)) {
+            self.separate(state)?;
+        }
         let mut found = match solver {
             Solver::Intersect => self.intersect(state),
-            Solver::Global => self.penetration(state),
+            Solver::Global => {
+                let limits = EpaLimits::new(&self.settings, GAP_REL, MAX_DEFAULT_POINTS);
+                self.minimize(self.centers.as_ref(), &limits, false, state, None)
+            }
             Solver::Proven => self.proven(state, arena),
             Solver::Local => self.local(state),
             Solver::Along(dir) => self.along(&dir, state),
@@ -151,6 +176,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let is_separated = axis.test(&self.difference)?.is_some();
         state.depth = axis.target_separation;
         if is_separated {
+            trace::end(None);
             return Err(Stop::Separated(axis.dir));
         }
         Ok(())
@@ -219,7 +245,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not. The result is blank.
     #[inline(always)]
     pub fn intersect(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        self.separate(state)?;
         let is_remembered = state.is_overlap();
         let first = if is_remembered {
             state.dir
@@ -238,7 +263,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds a local minimum of the depth by the local search ([`crate::local`]). If that ends without one,
     /// runs the global search from the direction of the upper bound.
     pub fn local(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        self.separate(state)?;
         let hit = self.descend(state)?;
         if hit.status == Status::Converged {
             return Ok(hit);
@@ -310,16 +334,6 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(is_minimum)
     }
 
-    /// Finds the global minimum of the depth within the larger of the tolerance and 0.1 % of it, with at most
-    /// [`MAX_DEFAULT_POINTS`] support points; if these do not suffice, a local search improves the depth. Assumes that
-    /// the centers lie in their objects.
-    #[inline(always)]
-    pub fn penetration(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        self.separate(state)?;
-        let limits = EpaLimits::new(&self.settings, GAP_REL, MAX_DEFAULT_POINTS);
-        self.minimize(self.centers.as_ref(), &limits, false, state, None)
-    }
-
     /// Finds the global minimum of the depth within the tolerance. The proof uses only support points; the
     /// centers select only where the search starts.
     #[inline(always)]
@@ -328,18 +342,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         state: &mut WarmStart,
         arena: &mut dyn Arena,
     ) -> Result<Penetration, Stop> {
-        self.separate(state)?;
         let limits = EpaLimits::new(&self.settings, 0.0, MAX_PROVEN_POINTS);
         self.minimize(None, &limits, false, state, Some(arena))
     }
 
-    /// Computes the least distance by which obj2 must move along `dir`, of any length, to separate the objects.
+    /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
     #[inline(never)]
     pub fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        let dir = direction(dir)?;
-        self.separate(state)?;
         let mut set = VertexSet::EMPTY;
-        let mut hit = along::penetration(&self.difference, &mut set, &dir, &self.settings)?;
+        let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
         self.prove_overlap(&mut hit, &mut set, false)?;
         *state = WarmStart::towards(hit.normal);
         hit.pos = hit.middle();
@@ -347,15 +358,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     }
 
     /// Finds a local minimum of the depth by W. Gao's method with the shortcut (Algorithms 4 and 5), from the
-    /// last direction, else from the start direction of a cold query. `plane`: a normal of any length; only
-    /// directions perpendicular to it are searched.
+    /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
+    /// perpendicular to it are searched.
     pub fn incremental(
         &self,
         plane: Option<Vec3>,
         state: &mut WarmStart,
     ) -> Result<Penetration, Stop> {
-        let plane = plane.as_ref().map(direction).transpose()?;
-        self.separate(state)?;
         let start = state.direction().unwrap_or_else(|| self.cold_start());
         // Each iteration takes one support point; the start, the overlap and the contact position take the rest of 400
         // (measured on a thousand pairs of each category of c-tests/tests/stability/categories.h: at most 56).

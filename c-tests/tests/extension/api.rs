@@ -321,6 +321,13 @@ fn invalid_arguments_are_rejected() {
     for dir in [[0.0; 3], [0.0, nan, 1.0], [infinite, 0.0, 0.0]] {
         Arguments { dir, ..valid() }.assert_rejected_by(&["along", "planar", "contacts"], "direction");
         assert_eq!(format!("{:?}", Warm::guess(dir)), format!("{:?}", Warm::default()), "an invalid guess is cold");
+        // Also if the axis of the state separates the pair.
+        let (mut apart, settings) = (Warm::default(), Settings::default());
+        let far = Rounded { at: [9.0; 3], ..valid().b };
+        let [a, b]: [Body; 2] = [&valid().a, &far];
+        assert_eq!(ccd::penetration(a, b, &settings, Some(&mut apart)), Ok(None));
+        let found = ccd::penetration_along(a, b, dir, &settings, Some(&mut apart));
+        assert_eq!(found, Err(Error::Direction));
     }
     for bad in [nan, infinite, -infinite] {
         for (point, center) in [(true, false), (false, true), (true, true)] {
