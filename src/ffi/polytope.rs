@@ -8,7 +8,7 @@
 //! Therefore a node is one block of C's malloc, the links are ordered as libccd orders them, and
 //! `nearest` is updated by libccd's rule. [`crate::geometry::barycentric`] computes the distances.
 
-use core::ffi::{c_char, c_int};
+use core::ffi::{c_char, c_int, c_void};
 use core::mem::offset_of;
 use core::ptr::null_mut;
 
@@ -172,7 +172,7 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const
 /// Writes the polytope to an open C stream as text: points, edges as two and faces as three indices
 /// of points. Stores the index of each vertex in its `id`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut FILE) {
+pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut c_void) {
     // SAFETY: [inputs] (an open stream), [polytope]; the formats match what is passed.
     unsafe {
         fputs(c"-----\nPoints:\n".as_ptr(), file);
@@ -194,17 +194,11 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut FILE
     }
 }
 
-/// A C stream, passed on to C's functions.
-#[repr(C)]
-pub struct FILE {
-    _opaque: [u8; 0],
-}
-
 unsafe extern "C" {
-    fn fopen(name: *const c_char, mode: *const c_char) -> *mut FILE;
-    fn fclose(file: *mut FILE) -> c_int;
-    fn fputs(text: *const c_char, file: *mut FILE) -> c_int;
-    fn fprintf(file: *mut FILE, format: *const c_char, ...) -> c_int;
+    fn fopen(name: *const c_char, mode: *const c_char) -> *mut c_void;
+    fn fclose(file: *mut c_void) -> c_int;
+    fn fputs(text: *const c_char, file: *mut c_void) -> c_int;
+    fn fprintf(file: *mut c_void, format: *const c_char, ...) -> c_int;
 }
 
 /// Unlinks an element from the polytope's list and frees it.
@@ -220,7 +214,6 @@ unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
 }
 
 /// Returns the lists of vertices, edges and faces.
-#[inline(always)]
 unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
     // SAFETY: [polytope].
     unsafe {
@@ -233,7 +226,6 @@ unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
 }
 
 /// Allocates an element, fills its own part by `fill`, links it and updates `nearest`. Returns NULL when malloc fails.
-#[inline(always)]
 unsafe fn add<T>(
     pt: *mut ccd_pt_t,
     list: *mut ccd_list_t,
@@ -290,7 +282,6 @@ unsafe fn reset_nearest(pt: *mut ccd_pt_t) {
 
 /// Stores `element` as `nearest` if it is closer, or as close and of a lower type. An element at a
 /// NaN distance is never stored.
-#[inline(always)]
 unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
     // SAFETY: [polytope].
     unsafe {
@@ -312,7 +303,6 @@ unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
 
 /// Returns whether two numbers are equal by ccdEq of `ccd/vec3.h`. Its absolute term is part of the
 /// interface: it decides ties between elements, which FCL's EPA depends on.
-#[inline(always)]
 fn equal(a: Real, b: Real) -> bool {
     let difference = (a - b).abs();
     let (a, b) = (a.abs(), b.abs());
@@ -321,7 +311,6 @@ fn equal(a: Real, b: Real) -> bool {
 
 /// Returns the vertices of a face: those of its first edge, and the one of the second edge that is not
 /// among them.
-#[inline(always)]
 unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
     // SAFETY: [polytope].
     unsafe {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Defines libccd's C types with the names and the layout of libccd.so.2; sizes and offsets are
-//! asserted below.
+//! Defines the C types of libccd's exported functions with the names and the layout of libccd.so.2; sizes and offsets
+//! are asserted below.
 
 #![allow(non_camel_case_types, missing_docs)]
 
@@ -29,13 +29,6 @@ impl From<ccd_vec3_t> for Vec3 {
     fn from(v: ccd_vec3_t) -> Self {
         from_real(v.v)
     }
-}
-
-/// A quaternion: x, y, z, w.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ccd_quat_t {
-    pub q: [Real; 4],
 }
 
 /// Writes a point of `obj` farthest along `dir` to `vec`.
@@ -69,14 +62,6 @@ pub struct ccd_support_t {
     pub v: ccd_vec3_t,
     pub v1: ccd_vec3_t,
     pub v2: ccd_vec3_t,
-}
-
-/// Up to four support points, `ps[0..=last]`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct ccd_simplex_t {
-    pub ps: [ccd_support_t; 4],
-    pub last: c_int,
 }
 
 /// Node or head of a circular, doubly linked, intrusive list.
@@ -169,14 +154,12 @@ macro_rules! layout {
 #[cfg(all(unix, target_pointer_width = "64"))]
 layout! {
     ccd_vec3_t: 24 / 12 { v: 0 / 0 }
-    ccd_quat_t: 32 / 16 { q: 0 / 0 }
     ccd_t: 72 / 64 {
         first_dir: 0 / 0, support1: 8 / 8, support2: 16 / 16, center1: 24 / 24, center2: 32 / 32,
         max_iterations: 40 / 40,
         epa_tolerance: 48 / 48, mpr_tolerance: 56 / 52, dist_tolerance: 64 / 56,
     }
     ccd_support_t: 72 / 36 { v: 0 / 0, v1: 24 / 12, v2: 48 / 24 }
-    ccd_simplex_t: 296 / 148 { ps: 0 / 0, last: 288 / 144 }
     ccd_list_t: 16 / 16 { next: 0 / 0, prev: 8 / 8 }
     ccd_pt_el_t: 56 / 40 { kind: 0 / 0, dist: 8 / 4, witness: 16 / 8, list: 40 / 24 }
     ccd_pt_vertex_t: 152 / 96 { el: 0 / 0, id: 56 / 40, v: 64 / 44, edges: 136 / 80 }
