@@ -409,7 +409,6 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
         cache,
         max,
     )?;
-    let mut count = 0;
     for (out, contact) in room.iter_mut().zip(manifold.iter()) {
         *out = Contact {
             point1: to_real(&contact.point1),
@@ -417,9 +416,8 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
             depth: contact.depth as Real,
             id: contact.id,
         };
-        count += 1;
     }
-    Ok(&room[..count])
+    Ok(&room[..manifold.len()])
 }
 
 query!(
