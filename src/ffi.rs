@@ -6,8 +6,9 @@
 //! # Safety contract
 //!
 //! Guarantees of C callers and of this module. The comment of each `unsafe` names the clauses that it
-//! uses. In a function whose own contract names a clause, "the caller's guarantees are those of the
-//! callee" means that it calls another function of this module under the same clauses.
+//! uses; `polytope.rs`, which works on raw pointers only, names them once. In a function whose own
+//! contract names a clause, "the caller's guarantees are those of the callee" means that it calls another
+//! function of this module under the same clauses.
 //!
 //! - \[inputs\] An argument that is read points to a live, aligned, initialised object of
 //!   its C type, which only the callbacks change during the call. Object pointers are passed

@@ -8,6 +8,11 @@
 //! Therefore a node is one block of C's malloc, the links are ordered as libccd orders them, and
 //! `nearest` is updated by libccd's rule. [`crate::geometry::barycentric`] computes the distances.
 
+#![allow(
+    unsafe_op_in_unsafe_fn,
+    reason = "a polytope consists of raw pointers: every function needs [polytope] as a whole"
+)]
+
 use core::ffi::{c_char, c_int, c_void};
 use core::mem::offset_of;
 use core::ptr::null_mut;
@@ -23,41 +28,36 @@ use crate::math::{Real, Vec3};
 /// Makes `pt` an empty polytope.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtInit(pt: *mut ccd_pt_t) {
-    // SAFETY: [outputs].
-    unsafe {
-        for list in lists(pt) {
-            list_init(list);
-        }
-        reset_nearest(pt);
+    for list in lists(pt) {
+        list_init(list);
     }
+    reset_nearest(pt);
 }
 
 /// Frees every element and empties the lists. An edge or vertex that an element outside of the
 /// lists still refers to stays allocated and linked.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDestroy(pt: *mut ccd_pt_t) {
-    // SAFETY: [polytope]; an element is not read after it was deleted.
-    unsafe {
-        for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
-            for edge in (*face).edge {
-                if (*edge).faces[0] == face {
-                    (*edge).faces[0] = (*edge).faces[1];
-                }
-                (*edge).faces[1] = null_mut();
+    // An element is not read after it was deleted.
+    for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
+        for edge in (*face).edge {
+            if (*edge).faces[0] == face {
+                (*edge).faces[0] = (*edge).faces[1];
             }
-            delete(pt, &raw mut (*face).el);
+            (*edge).faces[1] = null_mut();
         }
-        for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
-            if (*edge).faces[0].is_null() {
-                list_remove(&raw mut (*edge).vertex_list[0]);
-                list_remove(&raw mut (*edge).vertex_list[1]);
-                delete(pt, &raw mut (*edge).el);
-            }
+        delete(pt, &raw mut (*face).el);
+    }
+    for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
+        if (*edge).faces[0].is_null() {
+            list_remove(&raw mut (*edge).vertex_list[0]);
+            list_remove(&raw mut (*edge).vertex_list[1]);
+            delete(pt, &raw mut (*edge).el);
         }
-        for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
-            if (*vertex).edges.next == &raw mut (*vertex).edges {
-                delete(pt, &raw mut (*vertex).el);
-            }
+    }
+    for vertex in elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices) {
+        if (*vertex).edges.next == &raw mut (*vertex).edges {
+            delete(pt, &raw mut (*vertex).el);
         }
     }
 }
@@ -68,15 +68,12 @@ pub unsafe extern "C-unwind" fn ccdPtAddVertex(
     pt: *mut ccd_pt_t,
     v: *const ccd_support_t,
 ) -> *mut ccd_pt_vertex_t {
-    // SAFETY: [inputs], [polytope].
-    unsafe {
-        let list = &raw mut (*pt).vertices;
-        add(pt, list, CCD_PT_VERTEX, |vertex: *mut ccd_pt_vertex_t| {
-            (*vertex).id = 0;
-            (*vertex).v = *v;
-            list_init(&raw mut (*vertex).edges);
-        })
-    }
+    let list = &raw mut (*pt).vertices;
+    add(pt, list, CCD_PT_VERTEX, |vertex: *mut ccd_pt_vertex_t| {
+        (*vertex).id = 0;
+        (*vertex).v = *v;
+        list_init(&raw mut (*vertex).edges);
+    })
 }
 
 /// Adds the edge between two vertices and returns it; NULL when either is NULL or malloc fails.
@@ -89,16 +86,13 @@ pub unsafe extern "C-unwind" fn ccdPtAddEdge(
     if v1.is_null() || v2.is_null() {
         return null_mut();
     }
-    // SAFETY: [polytope].
-    unsafe {
-        let list = &raw mut (*pt).edges;
-        add(pt, list, CCD_PT_EDGE, |edge: *mut ccd_pt_edge_t| {
-            (*edge).vertex = [v1, v2];
-            (*edge).faces = [null_mut(); 2];
-            list_append(&raw mut (*v1).edges, &raw mut (*edge).vertex_list[0]);
-            list_append(&raw mut (*v2).edges, &raw mut (*edge).vertex_list[1]);
-        })
-    }
+    let list = &raw mut (*pt).edges;
+    add(pt, list, CCD_PT_EDGE, |edge: *mut ccd_pt_edge_t| {
+        (*edge).vertex = [v1, v2];
+        (*edge).faces = [null_mut(); 2];
+        list_append(&raw mut (*v1).edges, &raw mut (*edge).vertex_list[0]);
+        list_append(&raw mut (*v2).edges, &raw mut (*edge).vertex_list[1]);
+    })
 }
 
 /// Adds the face between three edges and returns it; NULL when any is NULL or malloc fails.
@@ -112,28 +106,22 @@ pub unsafe extern "C-unwind" fn ccdPtAddFace(
     if e1.is_null() || e2.is_null() || e3.is_null() {
         return null_mut();
     }
-    // SAFETY: [polytope].
-    unsafe {
-        let list = &raw mut (*pt).faces;
-        add(pt, list, CCD_PT_FACE, |face: *mut ccd_pt_face_t| {
-            (*face).edge = [e1, e2, e3];
-            for edge in [e1, e2, e3] {
-                let free_side = usize::from(!(*edge).faces[0].is_null());
-                (*edge).faces[free_side] = face;
-            }
-        })
-    }
+    let list = &raw mut (*pt).faces;
+    add(pt, list, CCD_PT_FACE, |face: *mut ccd_pt_face_t| {
+        (*face).edge = [e1, e2, e3];
+        for edge in [e1, e2, e3] {
+            let free_side = usize::from(!(*edge).faces[0].is_null());
+            (*edge).faces[free_side] = face;
+        }
+    })
 }
 
 /// Recomputes distance and witness of every element; leaves `nearest` unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        for list in lists(pt) {
-            for element in elements(list) {
-                compute_distance(element);
-            }
+    for list in lists(pt) {
+        for element in elements(list) {
+            compute_distance(element);
         }
     }
 }
@@ -142,30 +130,25 @@ pub unsafe extern "C-unwind" fn ccdPtRecomputeDistances(pt: *mut ccd_pt_t) {
 /// NULL when the polytope is empty.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtNearest(pt: *mut ccd_pt_t) -> *mut ccd_pt_el_t {
-    // SAFETY: [polytope].
-    unsafe {
-        if (*pt).nearest.is_null() {
-            reset_nearest(pt);
-            for list in lists(pt) {
-                for element in elements(list) {
-                    update_nearest(pt, element);
-                }
+    if (*pt).nearest.is_null() {
+        reset_nearest(pt);
+        for list in lists(pt) {
+            for element in elements(list) {
+                update_nearest(pt, element);
             }
         }
-        (*pt).nearest
     }
+    (*pt).nearest
 }
 
 /// Appends the dump of [`ccdPtDumpSVT2`] to the named file; no effect when it cannot be opened.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const c_char) {
-    // SAFETY: [inputs] (a zero-terminated name), then [polytope].
-    unsafe {
-        let file = fopen(filename, c"a".as_ptr());
-        if !file.is_null() {
-            ccdPtDumpSVT2(pt, file);
-            fclose(file);
-        }
+    // [inputs]: a zero-terminated name.
+    let file = fopen(filename, c"a".as_ptr());
+    if !file.is_null() {
+        ccdPtDumpSVT2(pt, file);
+        fclose(file);
     }
 }
 
@@ -173,24 +156,22 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const
 /// of points. Stores the index of each vertex in its `id`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut c_void) {
-    // SAFETY: [inputs] (an open stream), [polytope]; the formats match what is passed.
-    unsafe {
-        fputs(c"-----\nPoints:\n".as_ptr(), file);
-        for (id, vertex) in (0..).zip(elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices)) {
-            (*vertex).id = id;
-            let [x, y, z] = (*vertex).v.v.v.map(f64::from);
-            fprintf(file, c"%lf %lf %lf\n".as_ptr(), x, y, z);
-        }
-        fputs(c"Edges:\n".as_ptr(), file);
-        for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
-            let [a, b] = (*edge).vertex;
-            fprintf(file, c"%d %d\n".as_ptr(), (*a).id, (*b).id);
-        }
-        fputs(c"Faces:\n".as_ptr(), file);
-        for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
-            let [a, b, c] = corners(face);
-            fprintf(file, c"%d %d %d\n".as_ptr(), (*a).id, (*b).id, (*c).id);
-        }
+    // [inputs]: an open stream; the formats match what is passed.
+    fputs(c"-----\nPoints:\n".as_ptr(), file);
+    for (id, vertex) in (0..).zip(elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices)) {
+        (*vertex).id = id;
+        let [x, y, z] = (*vertex).v.v.v.map(f64::from);
+        fprintf(file, c"%lf %lf %lf\n".as_ptr(), x, y, z);
+    }
+    fputs(c"Edges:\n".as_ptr(), file);
+    for edge in elements::<ccd_pt_edge_t>(&raw mut (*pt).edges) {
+        let [a, b] = (*edge).vertex;
+        fprintf(file, c"%d %d\n".as_ptr(), (*a).id, (*b).id);
+    }
+    fputs(c"Faces:\n".as_ptr(), file);
+    for face in elements::<ccd_pt_face_t>(&raw mut (*pt).faces) {
+        let [a, b, c] = corners(face);
+        fprintf(file, c"%d %d %d\n".as_ptr(), (*a).id, (*b).id, (*c).id);
     }
 }
 
@@ -203,26 +184,21 @@ unsafe extern "C" {
 
 /// Unlinks an element from the polytope's list and frees it.
 unsafe fn delete(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
-    // SAFETY: [polytope]; its elements are blocks of malloc.
-    unsafe {
-        list_remove(&raw mut (*element).list);
-        if (*pt).nearest == element {
-            (*pt).nearest = null_mut();
-        }
-        free(element.cast());
+    list_remove(&raw mut (*element).list);
+    if (*pt).nearest == element {
+        (*pt).nearest = null_mut();
     }
+    // [heap]; elements are blocks of malloc.
+    free(element.cast());
 }
 
 /// Returns the lists of vertices, edges and faces.
 unsafe fn lists(pt: *mut ccd_pt_t) -> [*mut ccd_list_t; 3] {
-    // SAFETY: [polytope].
-    unsafe {
-        [
-            &raw mut (*pt).vertices,
-            &raw mut (*pt).edges,
-            &raw mut (*pt).faces,
-        ]
-    }
+    [
+        &raw mut (*pt).vertices,
+        &raw mut (*pt).edges,
+        &raw mut (*pt).faces,
+    ]
 }
 
 /// Allocates an element, fills its own part by `fill`, links it and updates `nearest`. Returns NULL when malloc fails.
@@ -232,72 +208,62 @@ unsafe fn add<T>(
     kind: c_int,
     fill: impl FnOnce(*mut T),
 ) -> *mut T {
-    // SAFETY: [heap], [polytope]; a T begins with a ccd_pt_el_t.
-    unsafe {
-        let node: *mut T = malloc(size_of::<T>()).cast();
-        if !node.is_null() {
-            fill(node);
-            let element: *mut ccd_pt_el_t = node.cast();
-            (*element).kind = kind;
-            compute_distance(element);
-            list_append(list, &raw mut (*element).list);
-            update_nearest(pt, element);
-        }
-        node
+    // [heap]; a T begins with a ccd_pt_el_t.
+    let node: *mut T = malloc(size_of::<T>()).cast();
+    if !node.is_null() {
+        fill(node);
+        let element: *mut ccd_pt_el_t = node.cast();
+        (*element).kind = kind;
+        compute_distance(element);
+        list_append(list, &raw mut (*element).list);
+        update_nearest(pt, element);
     }
+    node
 }
 
 /// Computes the point of an element closest to the origin and its squared distance.
 #[inline(always)]
 unsafe fn compute_distance(element: *mut ccd_pt_el_t) {
     let origin = Vec3::zeros();
-    // SAFETY: [polytope]; an element's kind is that of its block.
-    unsafe {
-        let witness = match (*element).kind {
-            CCD_PT_VERTEX => Vec3::from((*element.cast::<ccd_pt_vertex_t>()).v.v),
-            CCD_PT_EDGE => {
-                let ends = (*element.cast::<ccd_pt_edge_t>()).vertex;
-                let [a, b] = ends.map(|v| Vec3::from((*v).v.v));
-                barycentric::segment(&origin, &a, &b).point
-            }
-            _ => {
-                let [a, b, c] = corners(element.cast()).map(|v| Vec3::from((*v).v.v));
-                barycentric::triangle(&origin, &a, &b, &c).point
-            }
-        };
-        (*element).witness = witness.into();
-        (*element).dist = super::vec3::distance2(&(*element).witness, &Vec3::zeros().into());
-    }
+    // An element's kind is that of its block.
+    let witness = match (*element).kind {
+        CCD_PT_VERTEX => Vec3::from((*element.cast::<ccd_pt_vertex_t>()).v.v),
+        CCD_PT_EDGE => {
+            let ends = (*element.cast::<ccd_pt_edge_t>()).vertex;
+            let [a, b] = ends.map(|v| Vec3::from((*v).v.v));
+            barycentric::segment(&origin, &a, &b).point
+        }
+        _ => {
+            let [a, b, c] = corners(element.cast()).map(|v| Vec3::from((*v).v.v));
+            barycentric::triangle(&origin, &a, &b, &c).point
+        }
+    };
+    (*element).witness = witness.into();
+    (*element).dist = super::vec3::distance2(&(*element).witness, &Vec3::zeros().into());
 }
 
 /// Sets `nearest` to none, as [`ccdPtInit`] does.
 unsafe fn reset_nearest(pt: *mut ccd_pt_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        (*pt).nearest = null_mut();
-        (*pt).nearest_dist = Real::MAX;
-        (*pt).nearest_type = CCD_PT_FACE;
-    }
+    (*pt).nearest = null_mut();
+    (*pt).nearest_dist = Real::MAX;
+    (*pt).nearest_type = CCD_PT_FACE;
 }
 
 /// Stores `element` as `nearest` if it is closer, or as close and of a lower type. An element at a
 /// NaN distance is never stored.
 unsafe fn update_nearest(pt: *mut ccd_pt_t, element: *mut ccd_pt_el_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        let (dist, kind) = ((*element).dist, (*element).kind);
-        let is_lower_type = kind < (*pt).nearest_type;
-        // Equality is tested last: the first two comparisons decide most cases.
-        let is_closer = if dist < (*pt).nearest_dist {
-            is_lower_type || !equal((*pt).nearest_dist, dist)
-        } else {
-            is_lower_type && equal((*pt).nearest_dist, dist)
-        };
-        if is_closer {
-            (*pt).nearest = element;
-            (*pt).nearest_dist = dist;
-            (*pt).nearest_type = kind;
-        }
+    let (dist, kind) = ((*element).dist, (*element).kind);
+    let is_lower_type = kind < (*pt).nearest_type;
+    // Equality is tested last: the first two comparisons decide most cases.
+    let is_closer = if dist < (*pt).nearest_dist {
+        is_lower_type || !equal((*pt).nearest_dist, dist)
+    } else {
+        is_lower_type && equal((*pt).nearest_dist, dist)
+    };
+    if is_closer {
+        (*pt).nearest = element;
+        (*pt).nearest_dist = dist;
+        (*pt).nearest_type = kind;
     }
 }
 
@@ -312,58 +278,43 @@ fn equal(a: Real, b: Real) -> bool {
 /// Returns the vertices of a face: those of its first edge, and the one of the second edge that is not
 /// among them.
 unsafe fn corners(face: *const ccd_pt_face_t) -> [*mut ccd_pt_vertex_t; 3] {
-    // SAFETY: [polytope].
-    unsafe {
-        let [a, b] = (*(*face).edge[0]).vertex;
-        let [c, other] = (*(*face).edge[1]).vertex;
-        [a, b, if c == a || c == b { other } else { c }]
-    }
+    let [a, b] = (*(*face).edge[0]).vertex;
+    let [c, other] = (*(*face).edge[1]).vertex;
+    [a, b, if c == a || c == b { other } else { c }]
 }
 
 /// Makes `head` an empty list.
 unsafe fn list_init(head: *mut ccd_list_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        (*head).next = head;
-        (*head).prev = head;
-    }
+    (*head).next = head;
+    (*head).prev = head;
 }
 
 /// Links `node` in front of `head`: at the end of the list.
 unsafe fn list_append(head: *mut ccd_list_t, node: *mut ccd_list_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        let last = (*head).prev;
-        (*node).prev = last;
-        (*node).next = head;
-        (*last).next = node;
-        (*head).prev = node;
-    }
+    let last = (*head).prev;
+    (*node).prev = last;
+    (*node).next = head;
+    (*last).next = node;
+    (*head).prev = node;
 }
 
 /// Unlinks `node` from its list.
 unsafe fn list_remove(node: *mut ccd_list_t) {
-    // SAFETY: [polytope].
-    unsafe {
-        (*(*node).prev).next = (*node).next;
-        (*(*node).next).prev = (*node).prev;
-    }
+    (*(*node).prev).next = (*node).next;
+    (*(*node).next).prev = (*node).prev;
 }
 
 /// Iterates over the elements of one of the polytope's lists, in order. The caller may delete the
 /// current element.
 unsafe fn elements<T>(head: *mut ccd_list_t) -> impl Iterator<Item = *mut T> {
-    // SAFETY: [polytope].
-    let mut next = unsafe { (*head).next };
+    let mut next = (*head).next;
     core::iter::from_fn(move || {
         let node = next;
         if node == head {
             return None;
         }
-        // SAFETY: [polytope]; every element begins with a ccd_pt_el_t.
-        unsafe {
-            next = (*node).next;
-            Some(node.byte_sub(offset_of!(ccd_pt_el_t, list)).cast())
-        }
+        next = (*node).next;
+        // Every element begins with a ccd_pt_el_t.
+        Some(node.byte_sub(offset_of!(ccd_pt_el_t, list)).cast())
     })
 }
