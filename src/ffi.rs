@@ -41,7 +41,6 @@ pub mod collide;
 pub mod paper;
 pub mod polytope;
 pub mod run;
-pub mod support;
 pub mod types;
 pub mod vec3;
 pub mod warm;

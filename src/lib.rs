@@ -97,9 +97,7 @@ pub mod internals {
 
     /// The exported C functions.
     pub mod ffi {
-        pub use crate::ffi::{
-            collide::*, paper::*, polytope::*, support::*, types::*, vec3::*, warm::*,
-        };
+        pub use crate::ffi::{collide::*, paper::*, polytope::*, types::*, vec3::*, warm::*};
     }
 }
 

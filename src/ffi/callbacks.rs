@@ -170,6 +170,7 @@ impl QueryArgs {
         // SAFETY: the caller's guarantees are those of the callees; `objects` has found that ccd is not NULL.
         unsafe {
             let objects = self.objects().ok_or(Fault::Missing)?;
+            let settings = self.settings(interface, solver, want);
             let (centers, first_dir) = match interface {
                 Interface::Mpr => (Some(self.centers().ok_or(Fault::Missing)?), None),
                 Interface::Gjk => (None, Some(self.first_dir().ok_or(Fault::Missing)?)),
@@ -178,7 +179,6 @@ impl QueryArgs {
                     centers => (centers, None),
                 },
             };
-            let settings = self.settings(interface, solver, want);
             Pair::new(objects, centers, first_dir, &settings)
         }
     }
