@@ -45,6 +45,18 @@ pub mod types;
 pub mod vec3;
 pub mod warm;
 
+/// Writes an output unless its pointer is NULL.
+///
+/// # Safety
+/// \[outputs\].
+#[inline(always)]
+unsafe fn write<T>(out: *mut T, value: T) {
+    if !out.is_null() {
+        // SAFETY: [outputs].
+        unsafe { out.write(value) };
+    }
+}
+
 unsafe extern "C" {
     fn malloc(size: usize) -> *mut c_void;
     fn calloc(count: usize, size: usize) -> *mut c_void;

@@ -14,27 +14,18 @@ use crate::types::Settings;
 
 /// An object whose support function is a C callback.
 #[derive(Clone, Copy)]
-pub struct Object {
-    obj: *const c_void,
-    support: ccd_support_fn,
-}
-
-impl Object {
-    /// Pairs an object with its support function.
-    pub fn new(obj: *const c_void, support: ccd_support_fn) -> Self {
-        Self { obj, support }
-    }
-}
+pub struct Object(pub *const c_void, pub ccd_support_fn);
 
 impl SupportMap for Object {
     #[inline]
     fn support(&self, dir: &Vec3) -> Vec3 {
+        let Object(obj, support) = *self;
         // Copying the whole struct compiles to packed stores. Packed loads of a callee can be served
         // by store-to-load forwarding from these, but not from three scalar stores.
         let dir = ccd_vec3_t::from(*dir);
         let mut point = ccd_vec3_t::default();
         // SAFETY: [callbacks]; nothing with a destructor is alive here.
-        unsafe { (self.support)(self.obj, &dir, &mut point) };
+        unsafe { support(obj, &dir, &mut point) };
         load(&point)
     }
 }
@@ -86,10 +77,7 @@ impl QueryArgs {
         }
         // SAFETY: [inputs]; only the two fields are read.
         let (support1, support2) = unsafe { ((*self.ccd).support1?, (*self.ccd).support2?) };
-        Some((
-            Object::new(self.obj1, support1),
-            Object::new(self.obj2, support2),
-        ))
+        Some((Object(self.obj1, support1), Object(self.obj2, support2)))
     }
 
     /// Returns the two centers, finite or not; `None` if a callback is NULL.

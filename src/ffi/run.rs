@@ -12,6 +12,7 @@ use super::types::ccd_vec3_t;
 use super::warm::codes::{CCD_BAD_INPUT, CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_NO_MEMORY};
 use super::warm::penetration::CCD_WANT_POS;
 use super::warm::state::{ccd_warm_t, read, store};
+use super::write;
 use crate::math::Real;
 use crate::minkowski::support::Fault;
 use crate::minkowski::support_query::Stop;
@@ -75,15 +76,9 @@ pub unsafe fn libccd_penetration(
             Err(Stop::Fault(Fault::NoMemory)) => return -2,
             Err(_) => return -1,
         };
-        if let Some(depth) = depth.as_mut() {
-            *depth = hit.depth as Real;
-        }
-        if let Some(dir) = dir.as_mut() {
-            *dir = hit.dir.into();
-        }
-        if let Some(pos) = pos.as_mut() {
-            *pos = hit.pos.into();
-        }
+        write(depth, hit.depth as Real);
+        write(dir, hit.dir.into());
+        write(pos, hit.pos.into());
     }
     0
 }

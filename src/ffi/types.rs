@@ -66,7 +66,6 @@ pub struct ccd_support_t {
 
 /// Node or head of a circular, doubly linked, intrusive list.
 #[repr(C)]
-#[derive(Debug)]
 pub struct ccd_list_t {
     pub next: *mut ccd_list_t,
     pub prev: *mut ccd_list_t,
@@ -81,7 +80,6 @@ pub const CCD_PT_FACE: c_int = 3;
 
 /// The common first part of vertices, edges and faces.
 #[repr(C)]
-#[derive(Debug)]
 pub struct ccd_pt_el_t {
     /// C's field `type`.
     pub kind: c_int,
@@ -94,7 +92,6 @@ pub struct ccd_pt_el_t {
 }
 
 #[repr(C)]
-#[derive(Debug)]
 pub struct ccd_pt_vertex_t {
     pub el: ccd_pt_el_t,
     pub id: c_int,
@@ -104,7 +101,6 @@ pub struct ccd_pt_vertex_t {
 }
 
 #[repr(C)]
-#[derive(Debug)]
 pub struct ccd_pt_edge_t {
     pub el: ccd_pt_el_t,
     pub vertex: [*mut ccd_pt_vertex_t; 2],
@@ -115,7 +111,6 @@ pub struct ccd_pt_edge_t {
 }
 
 #[repr(C)]
-#[derive(Debug)]
 pub struct ccd_pt_face_t {
     pub el: ccd_pt_el_t,
     pub edge: [*mut ccd_pt_edge_t; 3],
@@ -123,7 +118,6 @@ pub struct ccd_pt_face_t {
 
 /// A polytope: three lists and the element closest to the origin.
 #[repr(C)]
-#[derive(Debug)]
 pub struct ccd_pt_t {
     pub vertices: ccd_list_t,
     pub edges: ccd_list_t,

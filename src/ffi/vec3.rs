@@ -4,6 +4,7 @@
 //! Exports libccd's distances of points from segments and triangles, and its three data objects.
 
 use super::types::ccd_vec3_t;
+use super::write;
 use crate::geometry::barycentric::{self, ClosestPoint};
 use crate::math::{Real, Vec3};
 
@@ -19,7 +20,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointSegmentDist2(
     // SAFETY: [inputs].
     let (p, a, b) = unsafe { (read(p), read(a), read(b)) };
     // SAFETY: [outputs].
-    unsafe { write(&p, barycentric::segment(&p, &a, &b), witness) }
+    unsafe { write_closest(&p, barycentric::segment(&p, &a, &b), witness) }
 }
 
 /// Returns the squared distance, m², of point `p` from triangle `abc`, and writes the closest point
@@ -35,7 +36,7 @@ pub unsafe extern "C-unwind" fn ccdVec3PointTriDist2(
     // SAFETY: [inputs].
     let (p, a, b, c) = unsafe { (read(p), read(a), read(b), read(c)) };
     // SAFETY: [outputs].
-    unsafe { write(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
+    unsafe { write_closest(&p, barycentric::triangle(&p, &a, &b, &c), witness) }
 }
 
 /// Reads a vector of the caller.
@@ -47,12 +48,14 @@ unsafe fn read(v: *const ccd_vec3_t) -> Vec3 {
 
 /// Writes the closest point to `witness` unless that is NULL, and returns its squared distance.
 #[inline(always)]
-unsafe fn write<const N: usize>(p: &Vec3, at: ClosestPoint<N>, witness: *mut ccd_vec3_t) -> Real {
+unsafe fn write_closest<const N: usize>(
+    p: &Vec3,
+    at: ClosestPoint<N>,
+    witness: *mut ccd_vec3_t,
+) -> Real {
     let point = ccd_vec3_t::from(at.point);
-    if !witness.is_null() {
-        // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
-        unsafe { *witness = point };
-    }
+    // SAFETY: [outputs]; the inputs were copied, so it may be one of them.
+    unsafe { write(witness, point) };
     distance2(&(*p).into(), &point)
 }
 

@@ -7,6 +7,7 @@ use core::ffi::{c_int, c_void};
 
 use super::super::callbacks::{Object, center_of};
 use super::super::types::{ccd_center_fn, ccd_support_fn, ccd_vec3_t};
+use super::super::write;
 use super::codes::CCD_BAD_INPUT;
 use crate::math::{Real, Vec3};
 use crate::minkowski::validate::check;
@@ -70,7 +71,7 @@ pub unsafe extern "C-unwind" fn ccdCheck(
     };
     // SAFETY: [callbacks].
     let center = center.map(|center| unsafe { center_of(center, obj) });
-    let report = check(&Object::new(obj, support), center.as_ref());
+    let report = check(&Object(obj, support), center.as_ref());
     let flags = [
         (report.not_finite, CCD_CHECK_NOT_FINITE),
         (report.opposite, CCD_CHECK_OPPOSITE),
@@ -86,9 +87,7 @@ pub unsafe extern "C-unwind" fn ccdCheck(
         center_outside: report.outside as Real,
         dir: Vec3::from(report.dir).into(),
     };
-    if !out.is_null() {
-        // SAFETY: [outputs].
-        unsafe { out.write(result) };
-    }
+    // SAFETY: [outputs].
+    unsafe { write(out, result) };
     flags.iter().map(|(is, flag)| c_int::from(*is) * flag).sum()
 }

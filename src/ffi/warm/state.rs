@@ -6,6 +6,7 @@
 use core::ffi::c_uint;
 
 use super::super::types::ccd_vec3_t;
+use super::super::write;
 use super::direction;
 use crate::minkowski::warm_start::WarmStart;
 
@@ -52,16 +53,10 @@ pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
 /// # Safety
 /// \[outputs\] of the module contract.
 pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
-    if !warm.is_null() {
-        let (reals, kind) = state.pack();
-        // SAFETY: [outputs].
-        unsafe {
-            *warm = ccd_warm_t {
-                reals,
-                words: [kind, 0],
-            };
-        }
-    }
+    let (reals, kind) = state.pack();
+    let words = [kind, 0];
+    // SAFETY: [outputs].
+    unsafe { write(warm, ccd_warm_t { reals, words }) };
 }
 
 /// Makes `warm` a new state that starts from `dir`, a guess of the penetration direction, along
