@@ -18,10 +18,10 @@
 //! inserted before callbacks are evaluated. The origin may be outside the polytope at first (its distance to a face is
 //! then negative), so that the polytope is the separation test too.
 //!
-//! Outputs. The upper bound is valid for every end. [`EpaPolytope::lower_bound`](crate::epa::polytope::EpaPolytope::lower_bound) is valid if the polytope encloses its
-//! interior point and the distance of the closest face is not negative.
+//! Outputs. The upper bound is valid for every end. [`EpaPolytope::lower_bound`] is valid if the polytope encloses its interior
+//! point and the distance of the closest face is not negative.
 
-use crate::epa::buffers::EpaSurface;
+use crate::epa::polytope::EpaPolytope;
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
@@ -37,11 +37,6 @@ use crate::types::{Settings, Status};
 /// add to their error. Measured (`campaigns -- wide`): without exact planes four times as many proofs at tolerance 0 end
 /// above it.
 const EXACT_PLANES_REL: f64 = 1e-11;
-
-/// The number of remaining support calls for which one corner less is reserved in the largest buffers, so that more known
-/// differences are inserted before. Measured: without it 4 % more support points for deep hulls, 1 to 3 % for ellipsoids;
-/// with 8, 4 in 4,000 nearly concentric spheres and capsules more end at the support limit.
-const CALLS_PER_SPARE_CORNER: usize = 16;
 
 /// The limits of a query.
 #[derive(Clone, Copy, Debug)]
@@ -80,12 +75,12 @@ impl EpaLimits {
 /// As [`SupportQuery::evaluate`].
 #[inline(always)]
 #[allow(clippy::too_many_arguments, reason = "the buffers have three sizes")]
-pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, const F: usize>(
+pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
     interior: &Vec3,
-    surface: &mut EpaSurface<C, F>,
+    polytope: &mut EpaPolytope<F>,
     iterations: &mut u64,
     limits: &EpaLimits,
     has_larger: bool,
@@ -97,7 +92,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
     let mut last_normal = Vec3::zeros();
     // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
     loop {
-        let polytope = &mut surface.polytope;
         let closest = polytope.closest_face();
         polytope.set_size(query.scale.size());
         let upper = query.upper.depth;
@@ -125,7 +119,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         if is_inside && query.support_points() >= limits.max_points {
             return Ok(Some(Status::SupportLimit));
         }
-        if set.is_full() || surface.corners.is_full() {
+        if set.is_full() || polytope.room() == 0 {
             return Ok(None);
         }
         let face = closest.face;
@@ -137,12 +131,10 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
         let is_gain =
             !(closest.key > 0.0) || height * distance > LARGE_PART * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
-        let remaining = N - set.len();
-        let reserved = remaining - remaining / CALLS_PER_SPARE_CORNER;
-        let has_room = has_larger || surface.corners.room() > reserved;
+        let has_room = has_larger || polytope.room() > N - set.len();
         if !(height > level && is_gain && has_room) {
             let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
-            let vertices = |set: &VertexSet<N>| surface.face(set, interior, face);
+            let vertices = |set: &VertexSet<N>| polytope.face(set, interior, face);
             let (sample, source) =
                 evaluate_beyond(query, set, fit, vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
@@ -165,11 +157,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const C: usize, cons
             return Ok(Some(Status::Rounding));
         }
         last_normal = normal;
-        let EpaSurface { corners, polytope } = &mut *surface;
-        let id = corners.push(w.pair);
-        let corner = |id| corners.vertex(set, interior, id).w;
-        if !polytope.insert(face, id, &w.w, rounding, &corner) {
-            corners.pop();
+        let corner = |pair| set.vertex(pair, interior).w;
+        if !polytope.insert(face, &w, rounding, &corner) {
             return Ok(None);
         }
     }
@@ -228,22 +217,20 @@ mod tests {
                 .evaluate(&mut set, &Vec3::from(n).normalize())?
                 .vertex();
         }
-        let mut surface = EpaSurface::<32, 64>::blank(query.scale.size());
-        assert!(surface.start(&start, query.scale.size(), false));
+        let mut polytope = EpaPolytope::<64>::blank(query.scale.size());
+        assert!(polytope.start(&start, query.scale.size(), false));
         let mut iterations = 0;
         let end = expand(
             &mut query,
             &mut set,
             &mut SphereFit::default(),
             &at,
-            &mut surface,
+            &mut polytope,
             &mut iterations,
             limits,
             false,
         )?;
-        let lower = surface
-            .polytope
-            .lower_bound(&surface.polytope.closest_face());
+        let lower = polytope.lower_bound(&polytope.closest_face());
         Ok((end, query.upper.depth, lower, iterations))
     }
 

@@ -33,10 +33,10 @@
 //! is 0, and `depth` is sound only for the points that the support functions returned.
 
 use crate::epa::buffers::{
-    Arena, EpaBuffers, EpaSurface, LARGE_VERTICES, LargeSurface, SMALL_VERTICES, START_VERTICES,
-    SmallSurface,
+    Arena, EpaBuffers, LARGE_FACES, LARGE_VERTICES, SMALL_FACES, SMALL_VERTICES, START_VERTICES,
 };
 use crate::epa::expand::{EpaLimits, expand};
+use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, witness_points};
 use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
 use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
@@ -353,11 +353,11 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
                 (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
                 _ => self.find_gjk_tetrahedron(set, &dir)?,
             };
-            let mut surface = SmallSurface::blank(self.query.scale.size());
-            let status = match self.expand_small(set, &mut surface, &start)? {
-                _ if surface.is_blank() => continue,
-                Some(status) => self.compute_result(set, &surface, status)?,
-                None => self.expand_large(set, &surface, arena)?,
+            let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
+            let status = match self.expand_small(set, &mut polytope, &start)? {
+                _ if polytope.is_blank() => continue,
+                Some(status) => self.compute_result(set, &polytope, status)?,
+                None => self.expand_large(set, &polytope, arena)?,
             };
             if let (Some(proof), true) = (self.proof, status != Status::Rounding) {
                 if !(proof.lower > self.query.scale.contact_eps()) {
@@ -393,15 +393,15 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     fn expand_small(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-        surface: &mut SmallSurface,
+        polytope: &mut EpaPolytope<SMALL_FACES>,
         start: &[Vertex; 4],
     ) -> Result<Option<Status>, Stop> {
         let scale = &self.query.scale;
         let is_exact = self.request.limits.needs_exact_planes(scale);
-        if !surface.start(start, scale.size(), is_exact) {
+        if !polytope.start(start, scale.size(), is_exact) {
             return Ok(Some(Status::Rounding));
         }
-        self.expand_in(set, surface, true)
+        self.expand_in(set, polytope, true)
     }
 
     /// Continues an expansion in the large buffers and, if these become full, in those of the arena if there is one.
@@ -411,22 +411,22 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     fn expand_large(
         &mut self,
         small_set: &VertexSet<SMALL_VERTICES>,
-        small_surface: &SmallSurface,
+        small_polytope: &EpaPolytope<SMALL_FACES>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<Status, Stop> {
         let mut set = VertexSet::<LARGE_VERTICES>::EMPTY;
-        let mut surface = LargeSurface::BLANK;
+        let mut polytope = EpaPolytope::<LARGE_FACES>::BLANK;
         set.copy_from(small_set);
-        surface.copy_from(small_surface);
-        let status = self.expand_in(&mut set, &mut surface, arena.is_some())?;
+        polytope.copy_from(small_polytope);
+        let status = self.expand_in(&mut set, &mut polytope, arena.is_some())?;
         match (status, arena.take()) {
             (None, Some(arena)) => {
                 let buffers = arena.buffers()?;
                 buffers.set.copy_from(&set);
-                buffers.surface.copy_from(&surface);
+                buffers.polytope.copy_from(&polytope);
                 self.expand_in_arena(buffers)
             }
-            _ => self.compute_result(&mut set, &surface, status.unwrap_or(Status::SupportLimit)),
+            _ => self.compute_result(&mut set, &polytope, status.unwrap_or(Status::SupportLimit)),
         }
     }
 
@@ -434,17 +434,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     #[cold]
     #[inline(never)]
     fn expand_in_arena(&mut self, buffers: &mut EpaBuffers) -> Result<Status, Stop> {
-        let EpaBuffers { set, surface } = buffers;
-        let status = self.expand_in(set, surface, false)?;
-        self.compute_result(set, surface, status.unwrap_or(Status::SupportLimit))
+        let EpaBuffers { set, polytope } = buffers;
+        let status = self.expand_in(set, polytope, false)?;
+        self.compute_result(set, polytope, status.unwrap_or(Status::SupportLimit))
     }
 
     /// Expands a polytope in these buffers. Returns as [`expand`].
     #[inline(always)]
-    fn expand_in<const N: usize, const C: usize, const F: usize>(
+    fn expand_in<const N: usize, const F: usize>(
         &mut self,
         set: &mut VertexSet<N>,
-        surface: &mut EpaSurface<C, F>,
+        polytope: &mut EpaPolytope<F>,
         has_larger: bool,
     ) -> Result<Option<Status>, Stop> {
         expand(
@@ -452,7 +452,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
             set,
             &mut self.fit,
             &self.interior.v,
-            surface,
+            polytope,
             &mut self.iterations,
             &self.request.limits,
             has_larger,
@@ -489,13 +489,12 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     /// Stores the result of an expansion that ended with `end`. Returns its status; [`Status::Rounding`] if the polytope
     /// does not provably contain the origin.
     #[inline(never)]
-    fn compute_result<const N: usize, const C: usize, const F: usize>(
+    fn compute_result<const N: usize, const F: usize>(
         &mut self,
         set: &mut VertexSet<N>,
-        surface: &EpaSurface<C, F>,
+        polytope: &EpaPolytope<F>,
         end: Status,
     ) -> Result<Status, Stop> {
-        let polytope = &surface.polytope;
         let closest = polytope.closest_face();
         let support_eps = self.query.scale.support_eps();
         let gap_limit = &self.request.limits.gap;
@@ -508,14 +507,14 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         };
         let interior = self.interior.v;
         if self.is_warm && end == Status::Converged && self.query.upper.depth - lower > tolerance {
-            let face = surface.face(set, &interior, closest.face);
+            let face = polytope.face(set, &interior, closest.face);
             self.refine_direction(set, &face, &polytope.normal(closest.face))?;
         }
         let upper = self.query.upper;
         let gap = self.allowed_gap();
         let is_closer = |proof: Proof| upper.depth - lower < proof.upper - proof.lower;
         if self.proof.is_none_or(is_closer) {
-            let face = || exit_face(&upper, &interior, set, surface, closest.face, gap);
+            let face = || exit_face(&upper, &interior, set, polytope, closest.face, gap);
             self.store_proof(set, face, lower, gap);
         }
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
@@ -571,8 +570,8 @@ mod tests {
 
     impl Heap {
         fn new() -> Self {
-            let (set, surface) = (VertexSet::EMPTY, EpaSurface::BLANK);
-            Self(Box::new(EpaBuffers { set, surface }), false)
+            let (set, polytope) = (VertexSet::EMPTY, EpaPolytope::BLANK);
+            Self(Box::new(EpaBuffers { set, polytope }), false)
         }
     }
 

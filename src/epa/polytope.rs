@@ -52,6 +52,7 @@
 
 use crate::geometry::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
 use crate::math::{Vec3, larger, lesser, normal};
+use crate::minkowski::vertex_set::{PAIR_BITS, Vertex, VertexPair, VertexSet};
 
 /// The mark of the bottom of the stack of half-edges in [`EpaPolytope::walk_visible`].
 const STACK_BOTTOM: u16 = u16::MAX;
@@ -71,7 +72,7 @@ const MIN_N2: f64 = 0.01;
 /// size, which is ten times as much for the least |N|.
 const INSERTION_ERROR_ULPS: f64 = 20.0;
 
-/// A polytope with room for `F` faces, whose corners have indices below 32768.
+/// A polytope with room for `F` faces.
 #[repr(C)]
 pub struct EpaPolytope<const F: usize> {
     planes: [[f64; 4]; F],
@@ -83,7 +84,7 @@ pub struct EpaPolytope<const F: usize> {
     /// face stores the half-edge that its edge 0 replaces, for [`EpaPolytope::revert`]; a visible face stores the link
     /// to the next lower half-edge on the stack of [`EpaPolytope::walk_visible`].
     twins: [[u16; 4]; F],
-    /// The corners of each face, 16 bits each: 0, 1, 2, and 0 again.
+    /// The corners 0, 1 and 2 of each face, [`PAIR_BITS`] each, from the low bits on.
     corners: [u64; F],
     /// The next free face for a free face, the next visible face for a visible one.
     next: [u16; F],
@@ -91,6 +92,8 @@ pub struct EpaPolytope<const F: usize> {
     free: usize,
     /// All faces that were ever used have indices below this.
     used: usize,
+    /// The number of points that were inserted, hidden ones included.
+    num_corners: usize,
     interior: Vec3,
     /// A lower bound of d − N·interior for all faces, metres.
     interior_clearance: f64,
@@ -122,6 +125,7 @@ impl<const F: usize> EpaPolytope<F> {
         next: [0; F],
         free: 0,
         used: 0,
+        num_corners: 0,
         interior: Vec3::new(0.0, 0.0, 0.0),
         interior_clearance: 0.0,
         error: 0.0,
@@ -176,11 +180,22 @@ impl<const F: usize> EpaPolytope<F> {
         h.wrapping_add_signed(isize::from(by[h & 3]))
     }
 
-    /// Returns the indices of a face's corners.
+    /// Returns the corners of a face.
     #[inline(always)]
-    pub fn corners(&self, f: usize) -> [usize; 3] {
-        let c = self.corners[Self::in_range(f)];
-        [c & 0xffff, c >> 16 & 0xffff, c >> 32 & 0xffff].map(|i| i as usize)
+    fn corners(&self, f: usize) -> [VertexPair; 3] {
+        let corners = self.corners[Self::in_range(f)];
+        [0, 1, 2].map(|i| VertexPair::from_bits(corners >> (PAIR_BITS * i)))
+    }
+
+    /// Returns the corners of a face with their coordinates. `interior`: the interior point of the query.
+    #[inline(always)]
+    pub fn face<const N: usize>(
+        &self,
+        set: &VertexSet<N>,
+        interior: &Vec3,
+        f: usize,
+    ) -> [Vertex; 3] {
+        self.corners(f).map(|pair| set.vertex(pair, interior))
     }
 
     /// Returns N of a face: outward, and at most 1 long, within rounding.
@@ -218,6 +233,13 @@ impl<const F: usize> EpaPolytope<F> {
             .map(|(f, _)| f)
     }
 
+    /// Returns the number of corners for which there is room: a closed surface of C corners has 2 C − 4 faces, and an
+    /// insertion makes a few new faces before it frees the old ones. Corners that have become hidden count too.
+    #[inline(always)]
+    pub fn room(&self) -> usize {
+        (F / 2).saturating_sub(self.num_corners)
+    }
+
     #[inline(always)]
     fn key(f: usize, square: f64) -> f64 {
         // Faces in use have finite keys.
@@ -225,27 +247,31 @@ impl<const F: usize> EpaPolytope<F> {
         f64::from_bits(finite.to_bits() & !INDEX_MASK | f as u64)
     }
 
-    /// Makes the polytope a tetrahedron whose points have the indices 0 to 3. `is_exact`: true if all planes are to be
-    /// computed from their corners, for tolerances that are too small for interpolated planes.
+    /// Makes the polytope a tetrahedron. Returns whether its volume is above the rounding of points of this size, metres;
+    /// otherwise the polytope is unchanged. `is_exact`: true if all planes are to be computed from their corners, for
+    /// tolerances that are too small for interpolated planes.
     #[inline(always)]
-    pub fn start(&mut self, tetrahedron: &Tetrahedron, is_exact: bool) {
-        let (a, b) = if tetrahedron.is_flipped {
-            (2, 1)
-        } else {
-            (1, 2)
+    pub fn start(&mut self, corners: &[Vertex; 4], size: f64, is_exact: bool) -> bool {
+        let points = corners.each_ref().map(|v| v.w);
+        let Some(tetrahedron) = Tetrahedron::new(points, f64::EPSILON * size) else {
+            return false;
         };
-        let corners = [[0, b, a], [0, a, 3], [a, b, 3], [b, 0, 3]];
+        let [o, mut a, mut b, c] = corners.each_ref().map(|v| v.pair);
+        if tetrahedron.is_flipped {
+            (a, b) = (b, a);
+        }
+        let corners = [[o, b, a], [o, a, c], [a, b, c], [b, o, c]];
         let twins = [[12, 8, 4, 0], [2, 10, 13, 0], [1, 14, 5, 0], [0, 6, 9, 0]];
         self.clear();
         for (f, plane) in tetrahedron.planes.iter().enumerate() {
             let d = plane.offset();
-            let [i, j, k] = corners[f];
             self.planes[f] = plane.array();
             self.keys[f] = Self::key(f, d * d.abs());
-            self.corners[f] = i | j << 16 | k << 32 | i << 48;
+            let [i, j, k] = corners[f].map(VertexPair::to_bits);
+            self.corners[f] = i | j << PAIR_BITS | k << (2 * PAIR_BITS);
             self.twins[f] = twins[f];
         }
-        (self.used, self.free) = (4, 4);
+        (self.used, self.free, self.num_corners) = (4, 4, 4);
         self.interior = tetrahedron.middle;
         self.interior_clearance = tetrahedron.interior_clearance;
         self.error = tetrahedron.error;
@@ -255,6 +281,12 @@ impl<const F: usize> EpaPolytope<F> {
         } else {
             (MIN_N2, KEY_ERROR_REL)
         };
+        true
+    }
+
+    /// Returns whether there is no polytope.
+    pub fn is_blank(&self) -> bool {
+        self.used == 0
     }
 
     /// Copies a polytope with less room. Its list of free faces ends with the index after its last face, so that it
@@ -268,6 +300,7 @@ impl<const F: usize> EpaPolytope<F> {
         self.corners[..M].copy_from_slice(&other.corners);
         self.next[..M].copy_from_slice(&other.next);
         (self.free, self.used) = (other.free, other.used);
+        self.num_corners = other.num_corners;
         (self.interior, self.interior_clearance) = (other.interior, other.interior_clearance);
         (self.error, self.ulp) = (other.error, other.ulp);
         (self.min_n2, self.key_error) = (other.min_n2, other.key_error);
@@ -345,9 +378,8 @@ impl<const F: usize> EpaPolytope<F> {
         refresh_keys
     }
 
-    /// Inserts the point `p` as the corner with index `id`. `first`: a face that p is above by more than `level`,
-    /// metres. `corner` returns the point of an index. Returns `false` if there is no room for the new faces; the
-    /// polytope is then unchanged.
+    /// Inserts the corner `new`. `first`: a face that it is above by more than `level`, metres. `corner` returns the point
+    /// of a corner. Returns `false` if there is no room for the new faces; the polytope is then unchanged.
     ///
     /// As long as the horizon is not a single closed loop, the height above which a face counts as visible is
     /// multiplied by eight, until only `first` is visible.
@@ -355,17 +387,16 @@ impl<const F: usize> EpaPolytope<F> {
     pub fn insert(
         &mut self,
         first: usize,
-        id: usize,
-        p: &Vec3,
+        new: &Vertex,
         level: f64,
-        corner: &impl Fn(usize) -> Vec3,
+        corner: &impl Fn(VertexPair) -> Vec3,
     ) -> bool {
         let mut above = level;
         // Terminates: the horizon of only `first` is closed.
         loop {
-            match self.walk_visible(first, id, p, above, corner) {
+            match self.walk_visible(first, new, above, corner) {
                 Insertion::HorizonNotSimple if above < f64::INFINITY => {
-                    let height = self.plane(first).height(&Plane::point(p));
+                    let height = self.plane(first).height(&Plane::point(&new.w));
                     above = if 8.0 * above < height {
                         8.0 * above
                     } else {
@@ -383,12 +414,11 @@ impl<const F: usize> EpaPolytope<F> {
     fn walk_visible(
         &mut self,
         first: usize,
-        id: usize,
-        p: &Vec3,
+        new: &Vertex,
         level: f64,
-        corner: &impl Fn(usize) -> Vec3,
+        corner: &impl Fn(VertexPair) -> Vec3,
     ) -> Insertion {
-        let point = Plane::point(p);
+        let point = Plane::point(&new.w);
         let mut tail = first;
         self.keys[Self::in_range(first)] = f64::INFINITY;
         let mut edge = 4 * first;
@@ -419,12 +449,12 @@ impl<const F: usize> EpaPolytope<F> {
                     self.revert(first, tail, free);
                     return Insertion::NoRoom;
                 }
-                self.add_face(free, [edge, twin], [neighbour, point], id, corner);
-                let (f, new) = (Self::in_range(free), 4 * free);
+                self.add_face(free, [edge, twin], [neighbour, point], new.pair, corner);
+                let (f, fan) = (Self::in_range(free), 4 * free);
                 self.twins[f][2] = (previous | 1) as u16;
-                self.set_twin(twin, new);
-                self.set_twin(previous | 1, new | 2);
-                previous = new;
+                self.set_twin(twin, fan);
+                self.set_twin(previous | 1, fan | 2);
+                previous = fan;
                 free = usize::from(self.next[f]);
             }
             if top == usize::from(STACK_BOTTOM) {
@@ -442,6 +472,7 @@ impl<const F: usize> EpaPolytope<F> {
         self.set_twin(begin | 2, previous | 1);
         self.set_twin(previous | 1, begin | 2);
         self.used = self.used.max(free.min(F));
+        self.num_corners += 1;
         self.next[Self::in_range(tail)] = free as u16;
         self.free = first;
         if self.min_n2 < f64::INFINITY {
@@ -458,16 +489,20 @@ impl<const F: usize> EpaPolytope<F> {
         f: usize,
         [edge, twin]: [usize; 2],
         [hidden, point]: [Plane; 2],
-        id: usize,
-        corner: &impl Fn(usize) -> Vec3,
+        new: VertexPair,
+        corner: &impl Fn(VertexPair) -> Vec3,
     ) {
         let visible = self.plane(edge >> 2);
         let above = visible.height(&point);
         let below = lesser(hidden.height(&point), 0.0);
         let plane = visible.towards(&hidden, above / (above - below));
-        let ends = self.corners[Self::in_range(edge >> 2)] >> (16 * (edge & 3)) & 0x7fff_ffff;
+        // The corners of the visible face, rotated so that the edge leads from the first to the second.
+        let corners = self.corners[Self::in_range(edge >> 2)];
+        let turn = PAIR_BITS * (edge & 3) as u32;
+        let rotated = corners >> turn | corners << (3 * PAIR_BITS - turn);
+        let ends = rotated & ((1 << (2 * PAIR_BITS)) - 1);
         let f = Self::in_range(f);
-        self.corners[f] = ends | (id as u64) << 32 | (ends & 0xffff) << 48;
+        self.corners[f] = ends | new.to_bits() << (2 * PAIR_BITS);
         self.planes[f] = plane.array();
         let (mut square, n2) = plane.signed_square();
         if !(n2 >= self.min_n2) {
@@ -531,7 +566,12 @@ impl<const F: usize> EpaPolytope<F> {
     /// distance.
     #[cold]
     #[inline(never)]
-    fn recompute_plane(&mut self, f: usize, parent: usize, corner: &impl Fn(usize) -> Vec3) -> f64 {
+    fn recompute_plane(
+        &mut self,
+        f: usize,
+        parent: usize,
+        corner: &impl Fn(VertexPair) -> Vec3,
+    ) -> f64 {
         let f = Self::in_range(f);
         let (old, parent) = (self.plane(f), self.plane(parent));
         let (_, n2) = old.signed_square();
@@ -563,7 +603,7 @@ impl<const F: usize> EpaPolytope<F> {
         &self,
         f: usize,
         is_inside: bool,
-        corner: &impl Fn(usize) -> Vec3,
+        corner: &impl Fn(VertexPair) -> Vec3,
     ) -> Option<(Plane, f64)> {
         let [a, b, p] = self.corners(f).map(corner);
         let n = normal(&p, &a, &b);
@@ -600,6 +640,27 @@ mod tests {
     /// The height above which a point counts as above a face of a polytope of size 1.
     const LEVEL: f64 = 8.0 * EPSILON as f64;
 
+    /// Returns the corner of point `i`.
+    fn corner(points: &[Vec3], i: usize) -> Vertex {
+        let (w, pair) = (points[i], VertexSet::<1>::pair_of_entry(i));
+        Vertex { w, pair }
+    }
+
+    /// Returns the point of a corner.
+    fn point(points: &[Vec3], pair: VertexPair) -> Vec3 {
+        points[usize::from(pair.a)]
+    }
+
+    /// Starts with the tetrahedron of the first four points.
+    fn start<const F: usize>(
+        hull: &mut EpaPolytope<F>,
+        points: &[Vec3],
+        size: f64,
+        exact: bool,
+    ) -> bool {
+        hull.start(&[0, 1, 2, 3].map(|i| corner(points, i)), size, exact)
+    }
+
     /// Asserts the invariants: the surface is closed, and all planes are below or at their corners and above the
     /// interior point.
     pub fn check<const F: usize>(hull: &EpaPolytope<F>, points: &[Vec3]) {
@@ -607,8 +668,8 @@ mod tests {
         for f in hull.faces() {
             let plane = hull.plane(f);
             let length = plane.normal().norm();
-            for i in hull.corners(f) {
-                let below = -plane.height(&Plane::point(&points[i])) / length;
+            for pair in hull.corners(f) {
+                let below = -plane.height(&Plane::point(&point(points, pair))) / length;
                 assert!(below <= hull.error, "{below} {}", hull.error);
             }
             assert!(plane.normal().dot(&hull.interior) < plane.offset());
@@ -647,11 +708,13 @@ mod tests {
         let mut hull = Box::new(EpaPolytope::<F>::BLANK);
         let size = points.iter().fold(0.0, |m: f64, p| m.max(p.norm()));
         let rounding = LEVEL * size;
-        let first = [0, 1, 2, 3].map(|i| points[i]);
-        hull.start(&Tetrahedron::new(first, EPSILON * size)?, exact);
+        if !start(&mut hull, points, size, exact) {
+            return None;
+        }
         for (i, p) in points.iter().enumerate().skip(4) {
             if let Some(f) = farthest_below(&hull, &Plane::point(p), rounding) {
-                let done = hull.insert(f, i, p, rounding, &|i| points[i]);
+                let done =
+                    hull.insert(f, &corner(points, i), rounding, &|pair| point(points, pair));
                 assert!(done);
             }
             check(&hull, points);
@@ -768,22 +831,21 @@ mod tests {
             EpaPolytope::<128>::BLANK,
             EpaPolytope::<128>::BLANK,
         );
-        let first = Tetrahedron::new([0, 1, 2, 3].map(|i| points[i]), EPSILON).unwrap();
-        small.start(&first, false);
-        whole.start(&first, false);
+        assert!(start(&mut small, &points, 1.0, false));
+        assert!(start(&mut whole, &points, 1.0, false));
         let mut is_copied = false;
         for (i, p) in points.iter().enumerate().skip(4) {
-            let corner = |i: usize| points[i];
+            let (new, point) = (corner(&points, i), |pair| point(&points, pair));
             let Some(f) = farthest_below(&whole, &Plane::point(p), LEVEL) else {
                 continue;
             };
-            assert!(whole.insert(f, i, p, LEVEL, &corner));
-            if !is_copied && !small.insert(f, i, p, LEVEL, &corner) {
+            assert!(whole.insert(f, &new, LEVEL, &point));
+            if !is_copied && !small.insert(f, &new, LEVEL, &point) {
                 large.copy_from(&small);
                 is_copied = true;
             }
             if is_copied {
-                assert!(large.insert(f, i, p, LEVEL, &corner));
+                assert!(large.insert(f, &new, LEVEL, &point));
                 check(&large, &points);
             }
         }
@@ -799,15 +861,14 @@ mod tests {
         let mut r = Random::new(5);
         let points = r.points(60, 1.0);
         let mut small = EpaPolytope::<32>::BLANK;
-        let first = [0, 1, 2, 3].map(|i| points[i]);
-        small.start(&Tetrahedron::new(first, EPSILON).unwrap(), false);
+        assert!(start(&mut small, &points, 1.0, false));
         let mut refused = 0;
         for (i, p) in points.iter().enumerate().skip(4) {
             if let Some(f) = farthest_below(&small, &Plane::point(p), LEVEL) {
                 let faces =
                     |p: &EpaPolytope<32>| p.faces().map(|f| p.corners(f)).collect::<Vec<_>>();
                 let before = faces(&small);
-                if !small.insert(f, i, p, LEVEL, &|i| points[i]) {
+                if !small.insert(f, &corner(&points, i), LEVEL, &|pair| point(&points, pair)) {
                     assert_eq!(before, faces(&small));
                     refused += 1;
                 }

@@ -3,7 +3,7 @@
 
 //! The witness points of the upper bound, from the polytope of the lower bound.
 
-use crate::epa::buffers::EpaSurface;
+use crate::epa::polytope::EpaPolytope;
 use crate::geometry::barycentric::triangle;
 use crate::math::{Vec3, lesser};
 use crate::minkowski::support::SupportPoint;
@@ -60,17 +60,17 @@ pub fn witness_points<const N: usize>(
 /// This is the closest face, `closest`, if its distance to the foot, `dir` times the depth, is within `gap`, metres.
 /// Otherwise it is the face closest to the foot among those whose plane the ray crosses before the depth: several faces
 /// may lie in one plane.
-pub fn exit_face<const N: usize, const C: usize, const F: usize>(
+pub fn exit_face<const N: usize, const F: usize>(
     upper: &SupportPlane,
     interior: &Vec3,
     set: &VertexSet<N>,
-    surface: &EpaSurface<C, F>,
+    polytope: &EpaPolytope<F>,
     closest: usize,
     gap: f64,
 ) -> [Vertex; 3] {
-    let (foot, polytope) = (upper.dir * upper.depth, &surface.polytope);
+    let foot = upper.dir * upper.depth;
     let distance2 = |f: usize| {
-        let [a, b, c] = surface.face(set, interior, f).map(|v| v.w);
+        let [a, b, c] = polytope.face(set, interior, f).map(|v| v.w);
         triangle(&foot, &a, &b, &c).distance2
     };
     let mut best = (closest, distance2(closest));
@@ -85,5 +85,5 @@ pub fn exit_face<const N: usize, const C: usize, const F: usize>(
             }
         }
     }
-    surface.face(set, interior, best.0)
+    polytope.face(set, interior, best.0)
 }

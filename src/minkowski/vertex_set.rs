@@ -40,17 +40,40 @@ pub struct VertexSet<const N: usize> {
     len: usize,
 }
 
+/// The bits of an index.
+const INDEX_BITS: u32 = 10;
+/// The bits of a packed pair.
+pub const PAIR_BITS: u32 = 2 * INDEX_BITS;
+/// The largest index, which no set has.
+const NO_INDEX: u16 = (1 << INDEX_BITS) - 1;
+
 impl VertexPair {
     /// The mark of the interior point, which is not a difference of known vertices.
     pub const INTERIOR: Self = Self {
-        a: u16::MAX,
-        b: u16::MAX,
+        a: NO_INDEX,
+        b: NO_INDEX,
     };
 
     /// Returns whether this is the interior point.
     #[inline(always)]
     pub fn is_interior(self) -> bool {
-        self.a == u16::MAX
+        self.a == NO_INDEX
+    }
+
+    /// Packs the pair into the low [`PAIR_BITS`] bits.
+    #[inline(always)]
+    pub fn to_bits(self) -> u64 {
+        u64::from(self.b) << INDEX_BITS | u64::from(self.a)
+    }
+
+    /// Unpacks a pair; the other bits are ignored.
+    #[inline(always)]
+    pub fn from_bits(bits: u64) -> Self {
+        let (a, b) = (
+            bits as u16 & NO_INDEX,
+            (bits >> INDEX_BITS) as u16 & NO_INDEX,
+        );
+        Self { a, b }
     }
 }
 
@@ -70,7 +93,7 @@ impl<const N: usize> VertexSet<N> {
     /// Returns an index that is in range for any `i`, so that no access is checked.
     #[inline(always)]
     fn in_range(i: usize) -> usize {
-        const { assert!(N > 0 && N <= 1024) };
+        const { assert!(N > 0 && N <= NO_INDEX as usize) };
         if N.is_power_of_two() {
             i & (N - 1)
         } else {
@@ -186,6 +209,17 @@ impl<const N: usize> VertexSet<N> {
             w: self.difference(pair),
             pair,
         }
+    }
+
+    /// Returns a corner. `interior`: the coordinates of the interior point.
+    #[inline(always)]
+    pub fn vertex(&self, pair: VertexPair, interior: &Vec3) -> Vertex {
+        let w = if pair.is_interior() {
+            *interior
+        } else {
+            self.difference(pair)
+        };
+        Vertex { w, pair }
     }
 
     /// Returns a known difference with its two vertices.
