@@ -49,8 +49,7 @@ use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_TILT_RAD, LARGE_PART, MAX_EXTRAPOLATION_TAN, MAX_FAILED_PREDICTIONS, SAME_VALLEY_COS,
-    SMALL_PART,
+    CONFIRM_TILT_RAD, LARGE_PART, MAX_EXTRAPOLATION_TAN, MAX_FAILURES, SAME_VALLEY_COS, SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -256,7 +255,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let mut prediction = None;
                 let worthwhile = self.query.upper.depth - SMALL_PART * tolerance;
                 if !along_normal {
-                    if self.failures < MAX_FAILED_PREDICTIONS {
+                    if self.failures < MAX_FAILURES {
                         prediction = self.predict(&face);
                     }
                     if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {

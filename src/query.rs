@@ -28,6 +28,7 @@ use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
+use crate::minkowski::separating_axis::test_axis;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
@@ -164,7 +165,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         found
     }
 
-    /// Evaluates the separating axis of the last query, if there is one, and stores the next target separation.
+    /// Evaluates the separating axis of the last query, if there is one.
     ///
     /// # Errors
     /// [`Stop::Separated`] with the axis for the next query: the axis separates. [`Fault::NonFinite`].
@@ -173,13 +174,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(());
         };
-        let is_separated = axis.test(&self.difference)?.is_some();
-        state.depth = axis.target_separation;
-        if is_separated {
-            trace::end(None);
-            return Err(Stop::Separated(axis.dir));
+        match test_axis(&self.difference, &mut axis)? {
+            Some(_) => {
+                trace::end(None);
+                Err(Stop::Separated(axis))
+            }
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else

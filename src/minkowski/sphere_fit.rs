@@ -15,7 +15,7 @@
 //!    outer side, the foot w predicts the least support value ρ − |w|, along −w / |w|; otherwise ρ + |w|, along
 //!    w / |w|.
 //! 3. *Confirmation.* A prediction that agrees with the evaluated support value confirms the fit; one that does
-//!    not resets the radii, and after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
+//!    not resets the radii, and after [`MAX_FAILURES`] of them the fit is not used any more.
 //! 4. *Tilted direction.* With a confirmed fit, the direction of the upper bound is tilted towards a face until the
 //!    chord of its support point and the new one is as close to the origin as the allowed gap permits.
 //!
@@ -26,9 +26,7 @@ use crate::geometry::barycentric;
 use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{
-    CONFIRM_TILT_RAD, MAX_FAILED_PREDICTIONS, MAX_RING_RATIO, SMALL_PART,
-};
+use crate::minkowski::tuning::{CONFIRM_TILT_RAD, MAX_FAILURES, MAX_RING_RATIO, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
@@ -278,7 +276,7 @@ impl SphereFit {
         gap: f64,
     ) -> QueryDirection {
         self.update(set, upper);
-        let is_used = self.failures < MAX_FAILED_PREDICTIONS;
+        let is_used = self.failures < MAX_FAILURES;
         let predicted = is_used.then(|| self.predict(set, corners, &normal));
         if let Some((dir, value)) = predicted.flatten() {
             if (value - upper.depth).abs() <= SMALL_PART * gap {
@@ -587,7 +585,7 @@ mod tests {
                 evaluate_beyond(query, set, fit, corners, &Vec3::x(), 1e-6, false).unwrap();
             source
         };
-        for i in 0..MAX_FAILED_PREDICTIONS {
+        for i in 0..MAX_FAILURES {
             let source = evaluate(&mut fit);
             assert_eq!((source, fit.failures), (DirectionSource::Prediction, i + 1));
             assert!(

@@ -7,14 +7,13 @@
 //! | [`WarmKind`] | `dir` | `depth` | `radius` |
 //! |---|---|---|---|
 //! | `Cold` | zero | 0 | 0 |
-//! | `Separated` | the separating axis | the target separation ([`crate::minkowski::separating_axis`]) | sphere radii or 0 |
+//! | `Separated` | the separating axis ([`crate::minkowski::separating_axis`]) | 0 | sphere radii or 0 |
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
 //!
 //! A radius is 0 unless a prediction of the sphere fits was confirmed.
 
 use crate::math::{EPSILON, Vec3, ZERO, unit};
 use crate::minkowski::general_position::start_direction;
-use crate::minkowski::separating_axis::SeparatingAxis;
 use crate::minkowski::support_query::Stop;
 
 /// Result of the last query.
@@ -34,7 +33,7 @@ pub enum WarmKind {
 pub struct WarmStart {
     /// Direction of the last result, unit; zero in a cold state.
     pub dir: Vec3,
-    /// The depth, metres; for `Separated` the target separation of the axis.
+    /// The depth, metres; 0 for `Separated`.
     pub depth: f64,
     /// Radii of the sphere fits of obj1 and obj2, metres; 0 unless a prediction was confirmed.
     pub radius: [f64; 2],
@@ -70,12 +69,11 @@ impl WarmStart {
         unit(dir).map_or(Self::COLD, |n| Self::towards(start_direction(&n)))
     }
 
-    /// Makes the state of a pair that unit `dir` separates. `target_separation`: metres. `radius`: the radii of
-    /// the sphere fits, metres.
-    pub fn separated(dir: Vec3, target_separation: f64, radius: [f64; 2]) -> Self {
+    /// Makes the state of a pair that unit `dir` separates. `radius`: the radii of the sphere fits, metres.
+    pub fn separated(dir: Vec3, radius: [f64; 2]) -> Self {
         Self {
             dir,
-            depth: target_separation,
+            depth: 0.0,
             radius,
             kind: WarmKind::Separated,
         }
@@ -85,9 +83,7 @@ impl WarmStart {
     #[inline(always)]
     pub fn note_separation<R>(&mut self, found: &Result<R, Stop>) {
         if let Err(Stop::Separated(dir)) = found {
-            let axis = self.separating_axis();
-            let target_separation = axis.map_or(0.0, |axis| axis.target_separation);
-            *self = Self::separated(*dir, target_separation, self.radius);
+            *self = Self::separated(*dir, self.radius);
         }
     }
 
@@ -107,11 +103,8 @@ impl WarmStart {
     }
 
     /// Returns the separating axis; `None` if the objects were not separated.
-    pub fn separating_axis(&self) -> Option<SeparatingAxis> {
-        (self.kind == WarmKind::Separated).then_some(SeparatingAxis {
-            dir: self.dir,
-            target_separation: self.depth,
-        })
+    pub fn separating_axis(&self) -> Option<Vec3> {
+        (self.kind == WarmKind::Separated).then_some(self.dir)
     }
 
     /// Returns the direction of the last result; `None` for a cold state. If a pair was separated and now

@@ -92,7 +92,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         }
         let tolerance = self.settings.tolerance;
         let found = separated_distance(&cores, contact_eps, tolerance, [margin1, margin2]);
-        *state = WarmStart::separated(cores.normal, larger(-found.depth, 0.0), radius);
+        *state = WarmStart::separated(cores.normal, radius);
         Ok(found)
     }
 
@@ -132,7 +132,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: max_iterations,
         };
         let axis = state.separating_axis();
-        let start = axis.map_or_else(|| self.cold_start(), |axis| axis.dir);
+        let start = axis.unwrap_or_else(|| self.cold_start());
         let cores = closest_points(&mut query, &mut fit, &start, axis.is_some(), &goal)?;
         Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
     }
