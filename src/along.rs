@@ -30,7 +30,7 @@ use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::SMALL_PART;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{MAX_STEPS, discover};
+use crate::portal::{MAX_STEPS, choose_corner, discover};
 use crate::trace;
 use crate::types::{Penetration, Settings, Status};
 
@@ -143,7 +143,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             if !(n.dot(&sample.w) - offset > rounding) {
                 return Ok(lower);
             }
-            replace_corner(portal, &self.dir, sample.vertex());
+            self.replace_corner(portal, sample.vertex());
         }
     }
 
@@ -172,9 +172,14 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             if is_corner || !(n.dot(&(w.w - portal[0].w)) > level) {
                 break;
             }
-            replace_corner(portal, &self.dir, w);
+            self.replace_corner(portal, w);
         }
         n
+    }
+
+    /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
+    fn replace_corner(&self, portal: &mut [Vertex; 3], w: Vertex) {
+        portal[choose_corner(portal.each_ref().map(|v| v.w), &self.dir, &w.w)] = w;
     }
 
     /// Returns the result for a lower bound, metres. The witness points are those of the point of the portal at which
@@ -201,34 +206,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             ..Penetration::default()
         }
     }
-}
-
-/// The weight of the area of the new portal in the choice of a corner: a few ulps.
-const AREA_WEIGHT: f64 = 16.0 * f64::EPSILON;
-
-/// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal. Unlike
-/// [`crate::portal::replace_corner`] it decides by more than signs, which are rounding for rays close to an edge of D and
-/// for small portals.
-fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
-    // From w, because differences lose no digits.
-    let corners = portal.each_ref().map(|v| v.w - w.w);
-    // On which side of the plane through the ray and w a corner is.
-    let normal = ray.cross(&w.w);
-    let side = corners.each_ref().map(|v| normal.dot(v));
-    // The ray crosses the triangle of w and two corners on opposite sides. The two that are farthest on opposite sides
-    // stay; of equals those of the larger triangle, seen along the ray.
-    let score = |i: usize| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        let area = ray.dot(&corners[j].cross(&corners[k]));
-        lesser(side[j], -side[k]) + AREA_WEIGHT * area
-    };
-    let mut replaced = 0;
-    for i in 1..3 {
-        if score(i) > score(replaced) {
-            replaced = i;
-        }
-    }
-    portal[replaced] = w;
 }
 
 #[cfg(test)]

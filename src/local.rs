@@ -46,10 +46,10 @@ use crate::local::face::Face;
 use crate::local::newton::newton_step;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
-use crate::minkowski::support::{self, SupportMap, SupportPoint};
+use crate::minkowski::support::{self, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_TILT_RAD, LARGE_PART, MAX_EXTRAPOLATION_TAN, MAX_FAILURES, SAME_VALLEY_COS, SMALL_PART,
+    CONFIRM_TILT_RAD, LARGE_PART, MAX_FAILURES, SAME_VALLEY_COS, SMALL_PART,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -128,7 +128,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<Penetration, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
     let mut walk = Walk {
-        interior: query.interior.unwrap_or_default(),
+        interior: query.interior.map(|point| point.v).unwrap_or_default(),
         is_centered: query.interior.is_some(),
         query,
         set,
@@ -458,7 +458,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         trace::stage("confirmation");
         let before = self.query.upper.depth;
         let near = SMALL_PART * CONFIRM_TILT_RAD;
-        let far = center_tolerance.map_or(CONFIRM_TILT_RAD / SMALL_PART, |_| MAX_EXTRAPOLATION_TAN);
+        // The center of a sphere is the same however far the direction.
+        let far = center_tolerance.map_or(CONFIRM_TILT_RAD / SMALL_PART, |_| f64::INFINITY);
         let mut is_known = [false; 3];
         for k in 0..self.set.len() {
             let dir = self.set.dir(k);
@@ -553,12 +554,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if tetrahedron.is_some_and(|t| t.inner_radius() > t.error) {
             return Ok(());
         }
-        let center = SupportPoint {
-            v,
-            v1: v,
-            v2: Vec3::zeros(),
-        };
-        let center = self.is_centered.then_some(&center);
+        let center = self.query.interior;
         contains_origin(self.query, self.set, center, &face.normal, false).map(|_| ())
     }
 }
@@ -573,6 +569,7 @@ fn is_same(a: &Vec3, b: &Vec3) -> bool {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
+    use crate::minkowski::support::SupportPoint;
     use crate::minkowski::support::{Fault, MinkowskiDifference};
     use crate::shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,

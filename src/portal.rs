@@ -29,15 +29,17 @@ use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
-use crate::minkowski::tuning::{
-    CENTRAL_RING_TAN, LARGE_PART, MAX_FAILURES, SMALL_PART, TILT_GROWTH, TILT_WIDTH_OFF,
-};
+use crate::minkowski::tuning::{LARGE_PART, MAX_FAILURES, SMALL_PART, TILT_GROWTH};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
 
 /// The iteration limit of portal discovery and refinement, of the local search and of GJK. Each step comes closer to
 /// the surface of D, and few loops take forty; later steps only change rounding errors. Insensitive: 24 to 100.
 pub const MAX_STEPS: u32 = 100;
+
+/// The tangent of the angle between the ray and the directions of the widest ring: with the direction opposite to the ray
+/// they are those of a regular tetrahedron.
+pub const WIDEST_RING_TAN: f64 = 2.0 * core::f64::consts::SQRT_2;
 
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
@@ -163,7 +165,7 @@ fn discovery_dir(
     let off = -height / norm;
     let mut tilt = f64::INFINITY;
     if failures < MAX_FAILURES {
-        let widest = (TILT_WIDTH_OFF * off).max(LARGE_PART * edge) / length;
+        let widest = LARGE_PART * (off / SMALL_PART).max(edge) / length;
         tilt = lesser(TILT_GROWTH * upper.depth / off, widest);
         for _ in 0..failures {
             tilt *= TILT_GROWTH;
@@ -176,7 +178,7 @@ fn discovery_dir(
     }
 }
 
-/// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`CENTRAL_RING_TAN`]. Returns their
+/// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`WIDEST_RING_TAN`]. Returns their
 /// points as a portal; `None` if the set is full, or if the three points are nearly on a line.
 // Cold: codegen, see README.
 #[cold]
@@ -191,8 +193,8 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let e1 = perpendicular(ray);
     let e2 = ray.cross(&e1);
     let half = 0.75_f64.sqrt();
-    // At most 60 degrees, also for NaN.
-    let tilt = lesser(tilt, CENTRAL_RING_TAN);
+    // Also for NaN.
+    let tilt = lesser(tilt, WIDEST_RING_TAN);
     let turns = [[-0.5, half], [-0.5, -half], [1.0, 0.0]];
     let mut corners = [Vertex::default(); 3];
     for (corner, turn) in corners.iter_mut().zip(turns) {
@@ -222,6 +224,33 @@ pub fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
     } else {
         portal[1] = w;
     }
+}
+
+/// The weight of the area of the new portal in [`choose_corner`]: a few ulps.
+const AREA_WEIGHT: f64 = 16.0 * f64::EPSILON;
+
+/// Returns the index of the corner that [`replace_corner`] is to replace by `w`. It decides by more than signs, which are
+/// rounding for rays close to an edge of D and for small portals.
+pub fn choose_corner(corners: [Vec3; 3], ray: &Vec3, w: &Vec3) -> usize {
+    // From w, because differences lose no digits.
+    let corners = corners.map(|v| v - w);
+    // On which side of the plane through the ray and w a corner is.
+    let normal = ray.cross(w);
+    let side = corners.each_ref().map(|v| normal.dot(v));
+    // The ray crosses the triangle of w and two corners on opposite sides. The two that are farthest on opposite sides
+    // stay; of equals those of the larger triangle, seen along the ray.
+    let score = |i: usize| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let area = ray.dot(&corners[j].cross(&corners[k]));
+        lesser(side[j], -side[k]) + AREA_WEIGHT * area
+    };
+    let mut replaced = 0;
+    for i in 1..3 {
+        if score(i) > score(replaced) {
+            replaced = i;
+        }
+    }
+    replaced
 }
 
 /// Returns whether the ray crosses a portal, within `eps`, metres. The ray need not cross a portal that is a ring.

@@ -38,16 +38,16 @@ use crate::epa::buffers::{
 use crate::epa::expand::{EpaLimits, expand};
 use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, witness_points};
-use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
+use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
 use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::{CENTRAL_RING_TAN, SMALL_PART};
+use crate::minkowski::tuning::SMALL_PART;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{discover, refine, ring};
+use crate::portal::{WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 use crate::types::{Penetration, Status};
 
@@ -239,7 +239,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         let is_central = self.is_central(ray);
         let query = &mut *self.query;
         if is_central {
-            if let Some(portal) = ring(query, set, ray, CENTRAL_RING_TAN)? {
+            if let Some(portal) = ring(query, set, ray, WIDEST_RING_TAN)? {
                 return Ok(Some(portal));
             }
         }
@@ -290,16 +290,17 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     ) -> Result<bool, Stop> {
         let [a, b, c] = portal.each_ref().map(|v| v.w);
         let scale = &self.query.scale;
-        let size = scale.size();
+        let ulp = f64::EPSILON * scale.size();
         let tolerance = scale.tolerance(self.request.limits.gap.tolerance);
         let allowed = self.allowed_gap();
-        let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
-        // A lower bound of at most the contact epsilon proves no overlap.
-        let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
-        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
+        let Some(tetrahedron) = Tetrahedron::new([self.interior.v, a, b, c], ulp) else {
             return Ok(false);
         };
-        let lower = distance - error;
+        let lower = tetrahedron.inner_radius() - tetrahedron.error - scale.support_eps();
+        // A lower bound of at most the contact epsilon proves no overlap.
+        if !(lower > larger(self.query.upper.depth - allowed, scale.contact_eps())) {
+            return Ok(false);
+        }
         if self.is_warm && self.query.upper.depth - lower > tolerance {
             let normal = (b - a).cross(&(c - a));
             self.refine_direction(set, portal, &normal)?;

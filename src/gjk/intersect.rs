@@ -96,7 +96,7 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     let mut set = VertexSet::<CAPACITY>::EMPTY;
     set.push(&query.upper.dir, first);
     let inner = match query.interior {
-        Some(point) => point,
+        Some(point) => point.v,
         None => {
             let dir = unit(&-first.v).unwrap_or(-query.upper.dir);
             find_interior(query, &mut set, first, &dir)?.v
@@ -278,7 +278,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         let eps2 = contact_eps * contact_eps;
         let was_triangle = simplex.len() == 3;
         let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
-            if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
+            if !(closest2 > eps2 || has_point_behind) {
                 // The origin is in the plane of the old face within rounding: query the other side of D.
                 make_room(set, simplex.slots());
                 query.evaluate(set, &-dir)?;

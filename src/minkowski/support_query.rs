@@ -100,7 +100,7 @@ pub struct SupportQuery<'q, A, B> {
     /// point, because entries of a vertex set are moved and removed.
     pub upper: SupportPlane,
     /// The difference of the callers' centers, as long as no support plane excludes it from D.
-    pub interior: Option<Vec3>,
+    pub interior: Option<&'q SupportPoint>,
 }
 
 impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
@@ -109,7 +109,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     #[inline(always)]
     pub fn new(
         md: &'q MinkowskiDifference<A, B>,
-        interior: Option<&SupportPoint>,
+        interior: Option<&'q SupportPoint>,
         tolerance: f64,
     ) -> Self {
         let mut scale = Scale::default();
@@ -125,7 +125,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
                 dir: Vec3::new(1.0, 0.0, 0.0),
                 point: SupportPoint::default(),
             },
-            interior: interior.map(|point| point.v),
+            interior,
         }
     }
 
@@ -277,7 +277,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
             self.upper = *plane;
         }
         if let Some(interior) = self.interior {
-            let height = plane.dir.dot(&interior) - plane.depth;
+            let height = plane.dir.dot(&interior.v) - plane.depth;
             if height > 0.0 {
                 self.test_interior(height);
             }

@@ -15,6 +15,7 @@
 /// - the square of a turn, in radians: a ray that turns less, 29 degrees, is not evaluated again;
 /// - a segment: an interior point is that far from its ends. Measured: with 0.05 separated pairs take 7 % more support
 ///   points, with 0.5 10 %;
+/// - the tilt of portal discovery, see [`LARGE_PART`];
 /// - a tolerance: the increase of the support value that the tilt into general position may cause;
 /// - [`CONFIRM_TILT_RAD`]: a known direction between this part and its inverse of that tilt confirms a minimum in place of
 ///   a tilted one. Measured: against 0.4 0.3 % fewer support points of local searches.
@@ -24,7 +25,9 @@ pub const SMALL_PART: f64 = 0.25;
 /// less than this part of the tolerance are equal. Derived: all but a small part; in a local search that is left for the
 /// error of the witness points. Insensitive: 0.45 to 0.8; without it deep boxes take 50 % more instructions.
 ///
-/// Also the part of the edge of discovery: see [`TILT_WIDTH_OFF`]. Measured: without it 21 % more support points.
+/// The largest tilt of portal discovery is this part of max(distance of v1 from the ray / [`SMALL_PART`], |v1 v2|) / length
+/// of the ray in D. Measured: without the edge 21 % more support points; 4 times the distance in place of 3 takes 1 % fewer
+/// for the global minimum, and 13 % more for a local one of hulls, whose portals then extend into other valleys.
 pub const LARGE_PART: f64 = 1.0 - SMALL_PART;
 
 /// The number of attempts that may fail before another way is taken: axes of the last query, tilts of portal discovery,
@@ -33,17 +36,6 @@ pub const LARGE_PART: f64 = 1.0 - SMALL_PART;
 /// 1.5 % of the pairs of category CENTRED_SPHERE of c-tests/tests/stability/categories.h; without a limit some take 60
 /// support points more. With one axis pairs that stay separated take 6 % more instructions.
 pub const MAX_FAILURES: u32 = 5;
-
-// Models of D.
-
-/// The largest tangent of the angle over which D is extrapolated: from the normal of the best plane to a direction that
-/// GJK evaluates, and from the direction of a minimum to a known one of a sphere that confirms it. Measured: without a limit
-/// GJK takes 12 % more support points, and with 0.4 local searches of spheres 75 % more.
-pub const MAX_EXTRAPOLATION_TAN: f64 = 0.6;
-
-/// The largest ratio of the widths of two rings. Measured: without it 13 to 15 % more support points in proofs
-/// to 1e-10 m of shallow round pairs.
-pub const MAX_RING_RATIO: f64 = 100.0;
 
 // The separating axis.
 
@@ -58,10 +50,6 @@ pub const TARGET_REL: f64 = 0.0035;
 /// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
 /// support points in intersection tests.
 pub const TILT_GROWTH: f64 = 1.4;
-/// The largest tilt is max([`TILT_WIDTH_OFF`] · distance of v1 from the ray, [`LARGE_PART`] · |v1 v2|) / length of the
-/// ray in D. Measured: 4 takes 1 % fewer support points for the global minimum, and 13 % more for a local one of
-/// hulls, whose portals then extend into other valleys.
-pub const TILT_WIDTH_OFF: f64 = 2.75;
 
 // GJK.
 
@@ -69,12 +57,6 @@ pub const TILT_WIDTH_OFF: f64 = 2.75;
 /// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided; with 0.25 6 of 15
 /// million touches of turned hulls count as hits.
 pub const GENERIC_FRACTION: f64 = 0.44;
-
-// The polytope.
-
-/// The tangent of the angle between the ray and the directions of a ring around it that is the base of a polytope: 60
-/// degrees. No other ring is wider. Measured on deep overlaps: 1.0 and 2.8 take 1 to 3 % more instructions.
-pub const CENTRAL_RING_TAN: f64 = 1.7;
 
 // The local search.
 

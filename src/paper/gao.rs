@@ -34,6 +34,7 @@ use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::tolerance::Scale;
+use crate::portal::choose_corner;
 use crate::types::{Penetration, Settings, Status};
 
 /// The perturbation of a stationary direction, as tangents along two perpendicular vectors: 6 degrees in all, small
@@ -221,20 +222,8 @@ impl Portal {
     /// still crosses (paper, Algorithm 1, update_portal).
     #[inline]
     fn update(&mut self, w: SupportPlane) {
-        let c = self.ray.cross(&w.point.v);
-        // The signs are the sides of the vertices relative to the plane through the ray and w.
-        // The ray crosses the triangle of w and two vertices on opposite sides, so w replaces the
-        // third. The side of a vertex on that plane is rounding, so the pair that is farthest on
-        // opposite sides is taken.
-        let [t1, t2, t3] = self.planes.each_ref().map(|p| c.dot(&p.point.v));
-        let split = [t2.min(-t3), t3.min(-t1), t1.min(-t2)];
-        let mut replaced = 2;
-        for i in 0..2 {
-            if split[i] > split[replaced] {
-                replaced = i;
-            }
-        }
-        self.planes[replaced] = w;
+        let corners = self.planes.each_ref().map(|p| p.point.v);
+        self.planes[choose_corner(corners, &self.ray, &w.point.v)] = w;
     }
 
     /// Returns the points of obj1 and obj2 whose difference is the point at which the ray crosses the
