@@ -17,8 +17,8 @@
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
 //! so that the portal of a shallow contact is small and close to the minimum. If v1 is on the ray itself, the portal
-//! is a *ring*: the support points of three directions around the ray. If the ray must cross the portal, directions are
-//! perpendicular to it as in XenoCollide. The polytope of a deep overlap begins with a wide [`ring`] and no discovery.
+//! is a *ring*: the support points of three directions around the ray. A caller whose ray must cross the portal gets
+//! perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] and no discovery.
 //!
 //! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
 //! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
@@ -50,7 +50,7 @@ pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) 
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
 /// metres. `gap`: the allowed difference of the bounds, metres. `ring_tilt`: tangent of the tilt of [`ring`]; `None` for
-/// a portal that the ray must cross: no ring, and no tilted directions. The corners are in the order in which the portal's normal
+/// a portal that the ray must cross, and which is no ring. The corners are in the order in which the portal's normal
 /// points along the ray. A full set ends the discovery: `None`.
 ///
 /// # Errors
@@ -71,8 +71,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     let mut towards_ray = ray * v1.w.dot(ray) - v1.w;
     // The height of v1 and v2 along `towards_ray`, at most 0.
     let mut height = towards_ray.dot(&v1.w);
-    // Counts tilts; without them all have failed.
-    let mut failures = if ring_tilt.is_some() { 0 } else { MAX_FAILURES };
+    let mut failures = 0;
     if !(-height > 0.5 * gap * length) {
         match ring_tilt {
             Some(tilt) => match ring(query, set, ray, tilt)? {
@@ -83,6 +82,8 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
                 // Made perpendicular once more: a large part of the short vector is rounding.
                 let way = normalise_unscaled(&(towards_ray - ray * ray.dot(&towards_ray)));
                 (towards_ray, height) = (way.unwrap_or_else(|| perpendicular(ray)), 0.0);
+                // A tilt would be too small to find another point.
+                failures = MAX_FAILURES;
             }
         }
     }
