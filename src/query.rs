@@ -88,13 +88,13 @@ pub fn direction(dir: &Vec3) -> Result<Vec3, Fault> {
 /// A pair of objects, and what its caller wants to know of it: the input of a query.
 pub struct Pair<A, B> {
     /// The Minkowski difference of the objects.
-    pub difference: MinkowskiDifference<A, B>,
+    difference: MinkowskiDifference<A, B>,
     /// The difference of the callers' centers and the centers themselves, if both are given.
-    pub centers: Option<SupportPoint>,
+    centers: Option<SupportPoint>,
     /// The caller's first direction, if given.
-    pub first_dir: Option<Vec3>,
+    first_dir: Option<Vec3>,
     /// The tolerance, the limits and the requested results.
-    pub settings: Settings,
+    settings: Settings,
 }
 
 impl<A: SupportMap, B: SupportMap> Pair<A, B> {
@@ -127,8 +127,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         })
     }
 
-    /// Runs a query from the state of the last one, and makes it the state for the next. `arena`: used by
-    /// [`Solver::Proven`] and [`Solver::Distance`] alone.
+    /// Runs a query from the state of the last one. For the state of the next [`WarmStart::note_separation`] is to
+    /// follow. `arena`: used by [`Solver::Proven`] and [`Solver::Distance`] alone.
     ///
     /// # Errors
     /// [`Stop::Separated`], not of [`Solver::Distance`]; [`Stop::Fault`], also for a direction or an option that is
@@ -170,7 +170,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// # Errors
     /// [`Stop::Separated`] with the axis for the next query: the axis separates. [`Fault::NonFinite`].
     #[inline(always)]
-    pub fn separate(&self, state: &mut WarmStart) -> Result<(), Stop> {
+    fn separate(&self, state: &mut WarmStart) -> Result<(), Stop> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(());
         };
@@ -186,7 +186,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else
     /// the caller's first direction, else x.
     #[inline(always)]
-    pub fn cold_start(&self) -> Vec3 {
+    fn cold_start(&self) -> Vec3 {
         let first = match (&self.centers, &self.first_dir) {
             (Some(c), _) => {
                 // Three loads: codegen, see README.
@@ -206,7 +206,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// # Errors
     /// [`Stop::Separated`]: a queried direction separates. [`Fault::NonFinite`].
     #[inline(never)]
-    pub fn prove_overlap(
+    fn prove_overlap(
         &self,
         hit: &mut Penetration,
         set: &mut VertexSet<CAPACITY>,
@@ -245,7 +245,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not. The result is blank.
     #[inline(always)]
-    pub fn intersect(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn intersect(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
         let is_remembered = state.is_overlap();
         let first = if is_remembered {
             state.dir
@@ -263,7 +263,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Finds a local minimum of the depth by the local search ([`crate::local`]). If that ends without one,
     /// runs the global search from the direction of the upper bound.
-    pub fn local(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn local(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
         let hit = self.descend(state)?;
         if hit.status == Status::Converged {
             return Ok(hit);
@@ -338,18 +338,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds the global minimum of the depth within the tolerance. The proof uses only support points; the
     /// centers select only where the search starts.
     #[inline(always)]
-    pub fn proven(
-        &self,
-        state: &mut WarmStart,
-        arena: &mut dyn Arena,
-    ) -> Result<Penetration, Stop> {
+    fn proven(&self, state: &mut WarmStart, arena: &mut dyn Arena) -> Result<Penetration, Stop> {
         let limits = EpaLimits::new(&self.settings, 0.0, MAX_PROVEN_POINTS);
         self.minimize(None, &limits, false, state, Some(arena))
     }
 
     /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
     #[inline(never)]
-    pub fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
         let mut set = VertexSet::EMPTY;
         let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
         self.prove_overlap(&mut hit, &mut set, false)?;
@@ -361,11 +357,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds a local minimum of the depth by W. Gao's method with the shortcut (Algorithms 4 and 5), from the
     /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
     /// perpendicular to it are searched.
-    pub fn incremental(
-        &self,
-        plane: Option<Vec3>,
-        state: &mut WarmStart,
-    ) -> Result<Penetration, Stop> {
+    fn incremental(&self, plane: Option<Vec3>, state: &mut WarmStart) -> Result<Penetration, Stop> {
         let start = state.direction().unwrap_or_else(|| self.cold_start());
         // Each iteration takes one support point; the start, the overlap and the contact position take the rest of 400
         // (measured on a thousand pairs of each category of c-tests/tests/stability/categories.h: at most 56).
@@ -444,7 +436,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Returns the contact position of a hit. `set`: the known vertices of its search.
     #[inline(always)]
-    pub fn contact_position<const N: usize>(
+    fn contact_position<const N: usize>(
         &self,
         set: &VertexSet<N>,
         hit: &Penetration,

@@ -56,7 +56,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// # Errors
     /// [`Stop::Fault`], also for an option that is invalid.
     #[inline(always)]
-    pub fn signed_distance(
+    pub(super) fn signed_distance(
         &self,
         options: DistanceOptions,
         state: &mut WarmStart,
