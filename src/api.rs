@@ -16,7 +16,7 @@ use crate::ffi::warm::NAME;
 pub use crate::math::Real;
 use crate::math::{Vec3, from_real, lower_to_real, to_real};
 pub use crate::minkowski::support::Fault as Error;
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::if_overlapping;
 use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
@@ -195,7 +195,7 @@ fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
     solver: Solver,
 ) -> Result<Option<types::Penetration>, Error> {
     let centers = match (a.center(), b.center()) {
-        (Some(v1), Some(v2)) => Some([v1, v2].map(from_real)),
+        (Some(v1), Some(v2)) => Some(SupportPoint::new(from_real(v1), from_real(v2))),
         _ => None,
     };
     let pair = Pair::new((support_of(a), support_of(b)), centers, None, settings)?;

@@ -105,11 +105,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(always)]
     pub fn new(
         (obj1, obj2): (A, B),
-        centers: Option<[Vec3; 2]>,
+        centers: Option<SupportPoint>,
         first_dir: Option<Vec3>,
         settings: &Settings,
     ) -> Result<Self, Fault> {
-        let centers = centers.map(|[v1, v2]| SupportPoint { v: v1 - v2, v1, v2 });
         if centers.is_some_and(|c| !c.v.sum().is_finite()) {
             return Err(Fault::Center);
         }
@@ -214,11 +213,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<(), Stop> {
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
-        let witness = SupportPoint {
-            v: hit.point1 - hit.point2,
-            v1: hit.point1,
-            v2: hit.point2,
-        };
+        let witness = SupportPoint::new(hit.point1, hit.point2);
         query.scale.note(&witness);
         // Objects that touch within rounding count as separated, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > query.scale.contact_eps()) {
@@ -467,6 +462,7 @@ mod tests {
 
     /// Returns the pair of two objects, whose caller reads everything.
     fn pair_of<A: SupportMap, B: SupportMap>(a: A, b: B, centers: Option<[Vec3; 2]>) -> Pair<A, B> {
+        let centers = centers.map(|[v1, v2]| SupportPoint::new(v1, v2));
         Pair::new((a, b), centers, None, &SETTINGS).unwrap()
     }
 

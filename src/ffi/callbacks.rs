@@ -8,7 +8,7 @@ use core::ffi::{c_uint, c_void};
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
 use super::warm::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, CCD_WANT_POS};
 use crate::math::{Vec3, from_real};
-use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
 use crate::query::{Pair, Solver};
 use crate::types::Settings;
 
@@ -80,16 +80,17 @@ impl QueryArgs {
         Some((Object(self.obj1, support1), Object(self.obj2, support2)))
     }
 
-    /// Returns the two centers, finite or not; `None` if a callback is NULL.
+    /// Returns the centers and their difference, finite or not; `None` if a callback is NULL.
     ///
     /// # Safety
     /// \[inputs\] of the module contract.
     #[inline(always)]
-    unsafe fn centers(&self) -> Option<[Vec3; 2]> {
+    unsafe fn centers(&self) -> Option<SupportPoint> {
         // SAFETY: [inputs]; only the two fields are read.
         let (center1, center2) = unsafe { ((*self.ccd).center1?, (*self.ccd).center2?) };
         // SAFETY: [callbacks].
-        Some(unsafe { [center_of(center1, self.obj1), center_of(center2, self.obj2)] })
+        let (v1, v2) = unsafe { (center_of(center1, self.obj1), center_of(center2, self.obj2)) };
+        Some(SupportPoint::new(v1, v2))
     }
 
     /// Returns the direction of the first_dir callback, not normalised; `None` if the callback

@@ -35,6 +35,13 @@ pub struct SupportPoint {
 }
 
 impl SupportPoint {
+    /// Pairs a point of obj1 and a point of obj2.
+    #[inline(always)]
+    pub fn new(v1: Vec3, v2: Vec3) -> Self {
+        let v = v1 - v2;
+        Self { v, v1, v2 }
+    }
+
     /// Returns the largest absolute coordinate of the two witness points: the rounding error of `v`
     /// is proportional to it.
     #[inline]
@@ -67,8 +74,8 @@ pub fn witnesses<const N: usize>(weights: &[f64; N], points: [&SupportPoint; N])
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// A support function returned a point that is not finite, or the fourth power of |v1 − v2|
-    /// overflows (above 1e77 m).
+    /// A support function returned a point that is not finite, or the fourth power of its distance from
+    /// a point of the other shape overflows (above 1e77 m).
     NonFinite,
     /// An allocation failed.
     NoMemory,
