@@ -86,16 +86,6 @@ static inline double polygon_area(const polygon_t *f)
     return (double)sum;
 }
 
-static inline double polygon_perimeter(const polygon_t *f)
-{
-    truth_real sum = 0;
-    for (int i = 0; i < f->n; i++) {
-        const point2_t a = f->p[i], b = f->p[(i + 1) % f->n];
-        sum += hypotl(b.x - a.x, b.y - a.y);
-    }
-    return (double)sum;
-}
-
 /* Returns the distance of q from a convex polygon, a segment or a point. */
 static inline double polygon_distance(const polygon_t *f, point2_t q)
 {
