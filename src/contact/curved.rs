@@ -21,9 +21,9 @@ use crate::minkowski::support::{Fault, SupportMap};
 use core::f64::consts::FRAC_1_SQRT_2 as H;
 
 impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
-    /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: a
-    /// query returns a known vertex, or four points are in a plane with the deepest one and not of a disc; `extremes` then
-    /// has the queried vertices too.
+    /// Finds the points of a curved surface and makes their fan. Returns false if the surface is that of a polytope: it is not
+    /// a disc, and a query returns a known vertex or four points are in a plane with the deepest one; `extremes` then has the
+    /// queried vertices too.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -48,10 +48,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         let out = four_directions(Vec2::new(axis.x - axis.y, axis.x + axis.y) * H);
         let a = self.query(object, out[0])?;
         let c = self.query(object, out[2])?;
-        if self.is_known(object, extremes, [&a, &c]) {
-            [a, c].iter().for_each(|v| self.raise_extremes(extremes, v));
-            return Ok(false);
-        }
+        let is_known = self.is_known(object, extremes, [&a, &c]);
         let tolerance = POINT_REL * self.extent;
         fan.is_symmetric =
             (a + c).xy().norm_squared() < tolerance * tolerance && (a.z - c.z).abs() < DROP_TOL;
@@ -70,6 +67,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
         };
         let may_be_mirrored = self.has_centers && (fan.is_symmetric || has_axis);
         let is_mirrored = may_be_mirrored
+            && !is_known
             && self.tilt < MAX_TILT_TAN
             && is_round(&a, aside_a)
             && is_round(&c, aside_c)
@@ -81,7 +79,7 @@ impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {
             between = self.fit_disc_rim([&a, &b, &c, &d], &out);
             let normal = (b - a).cross(&(c - a));
             let drop_at_deepest = a.z + normal.xy().dot(&a.xy()) / normal.z;
-            let is_face = between.is_none() && drop_at_deepest < DROP_TOL;
+            let is_face = between.is_none() && (is_known || drop_at_deepest < DROP_TOL);
             let is_corner = [&b, &d].iter().any(|v| {
                 let same = self.vertex_offset;
                 is_within(v, &a, same) || is_within(v, &c, same)
