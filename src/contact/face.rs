@@ -28,9 +28,7 @@
 
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
-use crate::contact::tuning::{
-    MAX_LEAN, MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS,
-};
+use crate::contact::tuning::{MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS};
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
@@ -315,15 +313,13 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         // A corner costs up to two queries, and each unknown core one.
         let pending = self.face.samples.iter().filter(|s| !s.has_core).count() as u32;
         let count = self.query_count + 2;
-        let is_last = count > self.query_limit() || count + pending > MAX_QUERIES;
+        let is_last = count > MAX_QUERIES || count + pending > MAX_QUERIES;
         if self.face.samples.len() == MAX_CORNERS || is_last {
             return Ok(None);
         }
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
         let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
-        // Towards the second corner, so that rounding does not decide between them.
-        let lean = lesser(2.0 * self.face.coord_eps / (length * tilt_tan), MAX_LEAN);
-        let out = outwards(&a, &b, 1.0 / tilt_tan, lean);
+        let out = outwards(&a, &b, 1.0 / tilt_tan, 0.0);
         let new = self.query_corner(out * tilt_tan)?;
         if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
@@ -347,17 +343,10 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         self.face.coord_eps + self.face.tilt_tan * self.face.slop
     }
 
-    /// Returns the limit on the queries: half of [`MAX_QUERIES`] for at most four corners, none rounded.
-    fn query_limit(&self) -> u32 {
-        let samples = &self.face.samples;
-        let is_few = samples.len() <= 4 && samples.iter().all(|s| s.radius == 0.0);
-        if is_few { MAX_QUERIES / 2 } else { MAX_QUERIES }
-    }
-
     /// Finds the core of the corner of sample `i`, whose vertex moves in proportion to the tilt if it is rounded.
     fn find_core(&mut self, i: usize) -> Result<(), Fault> {
         let mut full = *self.face.samples.cyclic(i);
-        if full.has_core || self.query_count >= self.query_limit() {
+        if full.has_core || self.query_count >= MAX_QUERIES {
             return Ok(());
         }
         self.face.samples.cyclic_mut(i).has_core = true;
@@ -373,7 +362,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             }
             full = new;
         }
-        if self.query_count < self.query_limit() {
+        if self.query_count < MAX_QUERIES {
             let near = self.query(full.tilt * 0.5)?;
             let moved = offset(&near.found, &full.found).norm();
             let max_moved = self.face.slop / self.face.tilt_tan.sqrt();
