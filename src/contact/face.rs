@@ -273,16 +273,13 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         offset(&a.found, &b.found).norm() <= ROUND_CORNER_SLOPS * self.face.slop
     }
 
-    /// Returns whether a vertex was found before. If so, and if the directions differ, marks it as sharp. (If another
-    /// sample is near, it may still be rounded: for a rounded end of a segment two directions that differ only along
-    /// the segment return the same point.)
+    /// Returns whether a vertex was found before. If so, and if the directions differ, marks it as sharp.
     fn mark_if_found(&mut self, new: &FaceSample) -> bool {
         let samples = &self.face.samples;
         let known = (0..samples.len()).find(|i| self.is_same(samples.cyclic(*i), new));
         if let Some(i) = known {
             let tilt_change = (samples.cyclic(i).tilt - new.tilt).norm();
-            let near_count = samples.iter().filter(|s| self.is_near(s, new)).count();
-            let is_sharp = near_count == 1 && tilt_change >= 0.25 * self.face.tilt_tan;
+            let is_sharp = tilt_change >= 0.25 * self.face.tilt_tan;
             self.face.samples.cyclic_mut(i).has_core |= is_sharp;
         }
         known.is_some()

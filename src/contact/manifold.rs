@@ -67,13 +67,7 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         &region,
         larger(one.slop, two.slop),
     );
-    let order = reduced(
-        &region,
-        &ids,
-        cache.ids[0],
-        max,
-        one.coord_eps + two.coord_eps,
-    );
+    let order = reduced(&region, &ids, max, one.coord_eps + two.coord_eps);
     let mut manifold = Manifold::default();
     let mut stored_ids: FixedVec<(Vec3, u32), MAX_CONTACTS> = FixedVec::default();
     for i in order.iter() {
@@ -109,16 +103,12 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
 fn reduced(
     region: &Polygon<MAX_CONTACTS>,
     ids: &FixedVec<u32, MAX_CONTACTS>,
-    first_id: u32,
     max: usize,
     tie_eps: f64,
 ) -> FixedVec<usize, MAX_CONTACTS> {
     // A smaller sum of drops is deeper.
     let is_deeper = |i: usize, j: usize| region.cyclic(i).z < region.cyclic(j).z - tie_eps;
-    let mut deepest = (1..region.len()).fold(0, |k, i| if is_deeper(i, k) { i } else { k });
-    let is_first =
-        |i: &usize| first_id != 0 && *ids.cyclic(*i) == first_id && !is_deeper(deepest, *i);
-    deepest = (0..region.len()).find(is_first).unwrap_or(deepest);
+    let deepest = (1..region.len()).fold(0, |k, i| if is_deeper(i, k) { i } else { k });
     let best = region.reduced(deepest, max);
     if region.len() > max && *ids.cyclic(deepest) != 0 {
         let kept = (deepest..deepest + region.len()).filter(|i| *ids.cyclic(*i) != 0);
