@@ -136,7 +136,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         trace::stage("closest points");
         let first = self
             .query
-            .evaluate_signed_first(&mut self.set, start, is_remembered)?
+            .evaluate_signed(&mut self.set, start, is_remembered)?
             .vertex();
         self.add(first);
         let mut closest = f64::INFINITY;
@@ -171,10 +171,13 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             was_limited = limited.is_some();
             if let Some(n) = limited {
                 is_step = false;
-                self.query.evaluate_signed(&mut self.set, &n)?;
+                self.query.evaluate_signed(&mut self.set, &n, false)?;
                 continue;
             }
-            let w = self.query.evaluate_signed(&mut self.set, &dir)?.vertex();
+            let w = self
+                .query
+                .evaluate_signed(&mut self.set, &dir, false)?
+                .vertex();
             // By more than the errors of two points.
             let level = 2.0 * self.query.scale.support_eps();
             if self.height(&dir, &w.w) > level && !self.add(w) {
@@ -240,7 +243,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
             return Ok(false);
         };
-        let sample = self.query.evaluate_signed(&mut self.set, &n)?;
+        let sample = self.query.evaluate_signed(&mut self.set, &n, false)?;
         self.was_prediction = true;
         self.fit.is_confirmed = sample.h <= value + SMALL_PART * (bound.depth - value);
         Ok(true)

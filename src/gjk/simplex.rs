@@ -433,7 +433,9 @@ mod tests {
             let mut query = SupportQuery::new(&md, None, 0.0);
             let mut set = VertexSet::<16>::EMPTY;
             while !set.is_full() {
-                query.evaluate_signed(&mut set, &r.direction()).unwrap();
+                query
+                    .evaluate_signed(&mut set, &r.direction(), false)
+                    .unwrap();
             }
             let mut simplex = Simplex::EMPTY;
             for _ in 0..3 {

@@ -225,26 +225,12 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Evaluates like [`SupportQuery::evaluate`], for a query that continues after a separating axis: the upper
-    /// bound is then negative.
+    /// bound is then negative. `is_remembered`: as in [`SupportQuery::evaluate_first`].
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
     pub fn evaluate_signed<const N: usize>(
-        &mut self,
-        set: &mut VertexSet<N>,
-        n: &Vec3,
-    ) -> Result<SupportSample, Fault> {
-        let plane = self.evaluate_tilted(n, self.tilt(false))?;
-        Ok(self.store_sample(set, &plane))
-    }
-
-    /// Evaluates the first direction like [`SupportQuery::evaluate_signed`]. `is_remembered`: as in
-    /// [`SupportQuery::evaluate_first`].
-    ///
-    /// # Errors
-    /// [`Fault::NonFinite`].
-    pub fn evaluate_signed_first<const N: usize>(
         &mut self,
         set: &mut VertexSet<N>,
         n: &Vec3,
