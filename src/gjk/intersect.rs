@@ -278,7 +278,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         let eps2 = contact_eps * contact_eps;
         let was_triangle = simplex.len() == 3;
         let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
-            if !(closest2 > eps2 || has_point_behind) {
+            if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
                 // The origin is in the plane of the old face within rounding: query the other side of D.
                 make_room(set, simplex.slots());
                 query.evaluate(set, &-dir)?;

@@ -99,11 +99,16 @@ impl Simplex {
     }
 
     /// Returns whether the origin is on the inner side of the old face by more than rounding, after
-    /// [`Simplex::add`] has returned `None`. (The normal of a sliver may point to either side.)
+    /// [`Simplex::add`] has returned `None`. (The normal of a sliver may point to either side.) If the interior
+    /// point is a corner, the old face contains that point and lies inside D, unless D is flat.
     pub fn is_certain(&self) -> bool {
         let [a, b, c, w] = self.tetrahedron().map(|corner| corner.w);
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * a.norm() * b.norm() * c.norm();
         let volume = (a - w).cross(&(b - w)).dot(&(c - w));
+        if self.has_interior() {
+            let edges = (a - w).norm() * (b - w).norm() * (c - w).norm();
+            return volume.abs() > TRIPLE_PRODUCT_ULPS * EPSILON * edges;
+        }
         let height = a.cross(&b).dot(&c);
         if volume < 0.0 {
             height < -error
@@ -116,6 +121,16 @@ impl Simplex {
     #[inline(always)]
     pub fn slots(&mut self) -> &mut [Vertex] {
         &mut self.slots
+    }
+
+    /// Returns whether the interior point is a corner.
+    #[inline(always)]
+    pub fn has_interior(&self) -> bool {
+        self.len > 0
+            && self
+                .corners()
+                .iter()
+                .any(|corner| corner.pair.is_interior())
     }
 
     /// Adds a point and keeps the feature closest to the origin. `contact_eps`: distance below which the
@@ -258,15 +273,24 @@ impl Simplex {
         let heights = [wa.dot(b), wb.dot(c), wc.dot(a)];
         // The length of a face's normal is at most 4 size2, so heights above this are at least 2 contact_eps.
         let clear_height = 8.0 * size2 * contact_eps;
+        // Faces that contain the interior point lie inside D: a rounding error there does not affect the
+        // result. Only the face opposite to that point matters.
+        let interior = [i, j, k].map(|slot| self.slots[slot & 3].pair.is_interior());
+        let has_interior = interior != [false; 3];
         // False for NaN: the origin then counts as outside.
-        let is_clear = |height: f64, p: &Vec3, q: &Vec3| {
-            height > clear_height || height > 0.0 && is_clear_of(height, p, q, w, contact_eps)
+        let is_clear = |height: f64, p: &Vec3, q: &Vec3, is_opposite: bool| {
+            let slack = if has_interior && !is_opposite {
+                -contact_eps
+            } else {
+                contact_eps
+            };
+            height > clear_height || height > -clear_height && is_clear_of(height, p, q, w, slack)
         };
         let mut best: Option<Feature> = None;
         let corners = [i, j, k, i];
         for s in 0..3 {
             let [p, q] = [corners[s], corners[s + 1]].map(|slot| &self.slots[slot & 3].w);
-            if is_clear(heights[s], p, q) {
+            if is_clear(heights[s], p, q, interior[(s + 2) % 3]) {
                 continue;
             }
             let order = [corners[s], corners[s + 1], newest];
@@ -279,13 +303,18 @@ impl Simplex {
     }
 }
 
-/// Returns whether the distance of the origin from the face of p, q and w exceeds twice the contact epsilon and the
+/// Returns whether the distance of the origin from the face of p, q and w exceeds twice the slack and the
 /// rounding error. `height`: that distance times twice the area of the face.
 #[cold]
-fn is_clear_of(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, contact_eps: f64) -> bool {
+fn is_clear_of(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     // The error of the product is proportional to the corners' lengths, however small the face is.
-    let error = TRIPLE_PRODUCT_ULPS * EPSILON * p.norm() * q.norm() * w.norm();
-    height > 2.0 * contact_eps * normal(p, q, w).norm() + error
+    let lengths = p.norm() * q.norm() * w.norm();
+    let error = if slack > 0.0 {
+        TRIPLE_PRODUCT_ULPS * EPSILON * lengths
+    } else {
+        0.0
+    };
+    height > 2.0 * slack * normal(p, q, w).norm() + error
 }
 
 /// Makes room for another entry: compacts a full set.
