@@ -76,7 +76,9 @@ impl fmt::Display for Error {
             Error::Tolerance => "the tolerance is negative or NaN",
             Error::Center => "a shape's center is not finite",
             Error::Direction => "a direction is zero or not finite",
-            Error::DistanceOptions => "a margin or max_distance is negative or not finite",
+            Error::DistanceOptions => {
+                "a margin is negative or not finite, or max_distance is negative or NaN"
+            }
             Error::ContactOptions => "the slop is negative or NaN, or there is no room",
         })
     }

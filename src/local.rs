@@ -569,8 +569,7 @@ fn is_same(a: &Vec3, b: &Vec3) -> bool {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::minkowski::support::SupportPoint;
-    use crate::minkowski::support::{Fault, MinkowskiDifference};
+    use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
     use crate::shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
     };

@@ -231,8 +231,9 @@ pub fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
 /// The weight of the area of the new portal in [`choose_corner`]: a few ulps.
 const AREA_WEIGHT: f64 = 16.0 * f64::EPSILON;
 
-/// Returns the index of the corner that [`replace_corner`] is to replace by `w`. It decides by more than signs, which are
-/// rounding for rays close to an edge of D and for small portals.
+/// Returns the index of the corner to be replaced by `w`, a point beyond the portal, so that the ray crosses the new
+/// portal. Unlike [`replace_corner`] it decides by more than signs, which are rounding for rays close to an edge of D and for
+/// small portals.
 pub fn choose_corner(corners: [Vec3; 3], ray: &Vec3, w: &Vec3) -> usize {
     // From w, because differences lose no digits.
     let corners = corners.map(|v| v - w);

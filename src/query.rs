@@ -354,8 +354,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// perpendicular to it are searched.
     fn incremental(&self, plane: Option<Vec3>, state: &mut WarmStart) -> Result<Penetration, Stop> {
         let start = state.direction().unwrap_or_else(|| self.cold_start());
-        // Each iteration takes one support point; the start, the overlap and the contact position take the rest of 400
-        // (measured on a thousand pairs of each category of c-tests/tests/stability/categories.h: at most 56).
+        // Each iteration takes one support point; the start, the overlap and the contact position take the rest of the
+        // limit of the tests (`call_limit` in c-tests/tests/stability/entries.h).
         let settings = Settings {
             max_iterations: self.settings.max_iterations.min(MAX_PROVEN_POINTS),
             ..self.settings

@@ -45,7 +45,7 @@ pub fn direction(dir: &Vec3, h: f64, upper: f64) {
     }
 }
 
-/// Prints the end of a query; `None`: the objects are separated.
+/// Prints the end of a query; `None`: it has no result.
 #[inline(always)]
 pub fn end(hit: Option<&Penetration>) {
     if IS_ON {
@@ -54,7 +54,7 @@ pub fn end(hit: Option<&Penetration>) {
                 "end              {:?}, bounds {:.9e} to {:.9e}",
                 hit.status, hit.depth_lower, hit.depth
             ),
-            None => eprintln!("end              separated"),
+            None => eprintln!("end              separated, or an invalid argument or point"),
         }
         STAGE.set("start");
         LOWER.set(0.0);

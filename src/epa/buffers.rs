@@ -11,13 +11,13 @@ use crate::minkowski::vertex_set::VertexSet;
 
 /// The limit of support points of a default query, up to the end of its polytope.
 pub const MAX_DEFAULT_POINTS: u64 = 160;
-/// The limit of support points of a query that proves the tolerance, up to the end of its polytope, and of the published
-/// method (along, incremental, planar).
+/// The limit of support points of a query that proves the tolerance, up to the end of its polytope; of a ray; and of the
+/// published method.
 ///
-/// No query is to take more than 400 support points in all. Derived: 400 − 80. Measured (`cargo run --release -p lab --bin
-/// campaigns -- wide`): up to 80 more, on nearly coincident bodies, are evaluated beyond this limit, for starts of the
-/// polytope that do not contain the origin yet and in the local search that follows
-/// ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). Queries without a polytope have
+/// Derived: 400 − 80. Measured (`cargo run --release -p lab --bin campaigns -- wide`): up to 80 more, on nearly coincident
+/// bodies, are evaluated beyond this limit, for starts of the polytope that do not contain the origin yet and in the local
+/// search that follows ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). The tests fail at the numbers of `call_limit` in
+/// c-tests/tests/stability/entries.h, at most 500. Queries without a polytope have
 /// [`ITERATION_CAP`](crate::math::ITERATION_CAP).
 pub const MAX_PROVEN_POINTS: u64 = 320;
 
@@ -32,6 +32,7 @@ pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + START_VERTICES;
 pub const LARGE_FACES: usize = 368;
 /// The number of vertices of the buffers of an [`Arena`].
 const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + START_VERTICES;
+/// The number of faces of these buffers: for as many known differences as vertices, two faces a corner.
 const ARENA_FACES: usize = 4 * ARENA_VERTICES;
 /// The number of entries that a start of the polytope adds to the vertex set: the corners of a tetrahedron. So much room
 /// is kept above the limit of support points too, which applies only while the origin is inside the polytope.
@@ -49,7 +50,7 @@ pub struct EpaBuffers {
     pub polytope: EpaPolytope<ARENA_FACES>,
 }
 
-/// A source of [`EpaBuffers`], used once and only if a query needs them.
+/// A source of [`EpaBuffers`], used only if a query needs them.
 pub trait Arena {
     /// Returns buffers with any contents.
     ///

@@ -34,7 +34,7 @@ use crate::trace;
 pub enum Stop {
     /// The objects are separated, or in contact within rounding: the unit vector is a separating axis.
     Separated(Vec3),
-    /// A callback returned an unusable point, or an allocation failed.
+    /// An argument or a callback's point is invalid, or an allocation failed.
     Fault(Fault),
 }
 

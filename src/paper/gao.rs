@@ -19,8 +19,8 @@
 //!    kept as the triangle v1, v2, v2 + m, which has the segment's normal in the plane.
 //!
 //! Departures. The result is the support plane (n, h(n)) with the least support value, not the ray: it is sound, and
-//! takes no further support call. Tests are signs of triple products; none has an absolute epsilon. A support
-//! plane that excludes the origin, or passes through it within the contact epsilon, ends the search: the objects are
+//! takes no further support call. Tests are signs of triple products; none has an absolute epsilon. Only the corner that
+//! a support point replaces is chosen by the products' sizes too ([`choose_corner`]). A support plane that excludes the origin, or passes through it within the contact epsilon, ends the search: the objects are
 //! separated. The direction of a ray through its own support point is stationary, but may be a maximum or a saddle: the
 //! search perturbs it once and continues. If an earlier support plane is lower than the last one, in another valley (see
 //! [`crate::local`]), the search continues there.

@@ -108,9 +108,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if_overlapping(found)
     }
 
-    /// Finds the closest points of the cores, from the separating axis of the state. `margin`: the sum of both. Returns them with the radii of the
-    /// sphere fits and the contact epsilon, metres. Not inlined, so that its stack frame is released before the depth is
-    /// computed.
+    /// Finds the closest points of the cores, from the separating axis of the state. `margin`: the sum of both, metres.
+    /// Returns them with the radii of the sphere fits and the contact epsilon, metres. Not inlined, so that its stack frame
+    /// is released before the depth is computed.
     #[inline(never)]
     fn find_cores(
         &self,
