@@ -108,23 +108,23 @@ impl QueryArgs {
     }
 
     /// Returns the caller's settings, with the tolerance that the solver reads. If that is negative or NaN, libccd's calls
-    /// use CCD_INIT's. `want`: CCD_WANT_ flags.
+    /// use CCD_INIT's. Of a solver that reads none, nothing is read. `want`: CCD_WANT_ flags.
     ///
     /// # Safety
     /// \[inputs\] of the module contract; `ccd` is not NULL.
     #[inline(always)]
     unsafe fn settings(&self, interface: Interface, solver: &Solver, want: c_uint) -> Settings {
-        // SAFETY: [inputs]; only the fields named are read.
+        let default = Settings::default();
+        // SAFETY: [inputs], [ccd]; only the fields named are read.
         let (tolerance, max_iterations) = unsafe {
             let tolerance = match solver {
-                Solver::Intersect => 0.0,
+                Solver::Intersect => return default,
                 Solver::Proven => (*self.ccd).epa_tolerance,
                 Solver::Distance(_) => (*self.ccd).dist_tolerance,
                 _ => (*self.ccd).mpr_tolerance,
             };
             (tolerance, (*self.ccd).max_iterations)
         };
-        let default = Settings::default();
         Settings {
             // Negated, so that NaN counts as negative.
             tolerance: if interface != Interface::Extension && !(tolerance >= 0.0) {
