@@ -96,8 +96,7 @@ if [ "$job" = tests ] || [ "$job" = check ]; then
     want_command xz xz-utils
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
-        want_package libccd-dev libfcl-dev libode-dev libmujoco-dev \
-            libdart-dev libdart-collision-ode-dev
+        want_package libccd-dev libfcl-dev libode-dev libmujoco-dev libdart-dev
     fi
 fi
 

@@ -36,8 +36,7 @@ cp "$chroots/$build"/work/out/*.deb "$out"
 # --- tried
 try=try-$suite
 make_chroot "$try" "$suite"
-apt_in_chroot "$try" build-essential libccd-dev libfcl-dev libode-dev libmujoco-dev \
-    libdart-dev libdart-collision-ode-dev
+apt_in_chroot "$try" build-essential libccd-dev libfcl-dev libode-dev libmujoco-dev libdart-dev
 work=$chroots/$try/work
 rm -rf "$work"
 mkdir "$work"
