@@ -186,9 +186,8 @@ fn notices_name_every_crate() {
 }
 
 /// Checks that the installed libraries are small and carry no debug information, and that
-/// `cargo build --release` makes a small one. (The aim is 430,000; each solver is compiled once for
-/// every capacity.) Of the archive only this crate's objects count: the rest is Rust's standard
-/// library, of 10 to 20 MB.
+/// `cargo build --release` makes a small one. Of the archive only this crate's objects count: the
+/// rest is Rust's standard library, of 10 to 20 MB.
 #[test]
 fn libraries_are_small() {
     let prefix = installed_and_moved();

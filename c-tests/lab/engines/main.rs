@@ -69,7 +69,7 @@ fn long() -> bool {
     print_judged(&table, &rows.iter().flat_map(failures).collect::<Vec<_>>())
 }
 
-/// Prints the screens, and writes the first into this folder's page.
+/// Prints the screens, and writes the first into the page of the engines.
 fn screens() {
     let screens = CONSUMERS.map(|(_, file, arguments, _)| consumers::screen(file, &arguments.replace("START", "1")));
     println!("{}", screens.join("\n\n"));
