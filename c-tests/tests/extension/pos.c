@@ -149,7 +149,7 @@ static shape_t slender_body(int kind, ccd_real_t verts[3 * VERTICES])
 static void check_near(int every, int seed)
 {
     static const int kinds[] = {SHAPE_POLYTOPE, SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_CAPSULE, SHAPE_ELLIPSOID};
-    /* Known: 5 of two million, slender curved pairs, whose mirror images are no support points; by up to 1 mm. */
+    /* Known: at most 5 of two million, slender curved pairs, whose mirror images are no support points; by up to 1.1 mm. */
     const long hits = HITS / every, known = hits / 400000;
     long farther = 0;
     double worst = 0;
