@@ -4,6 +4,7 @@
 #
 # Installs missing Debian packages, as root or with sudo. First reports a Rust that is too old.
 #   setup.sh        packages of the tests
+#   setup.sh lab    those, and the engines of lab/: MuJoCo and DART, and with DART Bullet
 #   setup.sh main   packages of the main job
 #   setup.sh compare  packages of compare.sh: those of the main job, and a C++ compiler
 #   setup.sh check  installs nothing; prints the tests' missing packages in one line
@@ -57,12 +58,12 @@ main | compare)
     oldest=$(rust_version Cargo.toml)
     from="Debian 12's or 13's rustc-web and cargo-web, Debian 13's rustc and cargo, or https://rustup.rs"
     ;;
-tests | check)
+tests | lab | check)
     oldest=$(rust_version c-tests/setup/Cargo.toml)
     from="Debian 12's or 13's rustc-web and cargo-web, or https://rustup.rs"
     ;;
 *)
-    echo "usage: setup.sh [tests|main|compare|check]" >&2
+    echo "usage: setup.sh [tests|lab|main|compare|check]" >&2
     exit 2
     ;;
 esac
@@ -86,7 +87,7 @@ if command -v cc >/dev/null 2>&1; then
 fi
 
 [ "$job" = main ] || want_command c++ g++
-if [ "$job" = tests ] || [ "$job" = check ]; then
+if [ "$job" != main ] && [ "$job" != compare ]; then
     want_command objcopy binutils
     want_command pkg-config pkg-config
     want_command cmake cmake
@@ -96,7 +97,8 @@ if [ "$job" = tests ] || [ "$job" = check ]; then
     want_command xz xz-utils
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
-        want_package libccd-dev libfcl-dev libode-dev libmujoco-dev libdart-dev
+        want_package libccd-dev libfcl-dev libode-dev
+        [ "$job" != lab ] || want_package libmujoco-dev libdart-dev
     fi
 fi
 
@@ -116,7 +118,7 @@ if [ -n "$missing" ]; then
 fi
 
 # One test builds the library with the oldest supported Rust.
-if [ "$job" = tests ] && command -v rustup >/dev/null 2>&1; then
+if { [ "$job" = tests ] || [ "$job" = lab ]; } && command -v rustup >/dev/null 2>&1; then
     oldest=$(rust_version Cargo.toml)
     rustup run "$oldest" cargo --version >/dev/null 2>&1 ||
         rustup toolchain install "$oldest" --profile minimal ||
@@ -124,7 +126,7 @@ if [ "$job" = tests ] && command -v rustup >/dev/null 2>&1; then
 fi
 
 # These jobs compare with the system's libccd, if there is one.
-if [ "$job" != tests ] && command -v apt-get >/dev/null 2>&1; then
+if { [ "$job" = main ] || [ "$job" = compare ]; } && command -v apt-get >/dev/null 2>&1; then
     missing=
     want_package libccd2
     if [ -n "$missing" ]; then

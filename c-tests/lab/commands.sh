@@ -195,6 +195,7 @@ source.sh OUT
 sh cmake/packages/source.sh OUT
 sh c-tests/lab/release.sh LOGS
 sh c-tests/lab/release.sh LOGS packaging packaging-single
+sh c-tests/setup.sh lab
 release.sh LOGS STEP...
 tests.sh SUITE
 tests.sh bookworm
