@@ -179,7 +179,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
 
     /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
     fn replace_corner(&self, portal: &mut [Vertex; 3], w: Vertex) {
-        portal[choose_corner(portal.each_ref().map(|v| v.w), &self.dir, &w.w)] = w;
+        let replaced = choose_corner(portal.each_ref().map(|v| v.w), &self.dir, &w.w);
+        portal[replaced.min(2)] = w;
     }
 
     /// Returns the result for a lower bound, metres. The witness points are those of the point of the portal at which

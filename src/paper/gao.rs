@@ -20,10 +20,11 @@
 //!
 //! Departures. The result is the support plane (n, h(n)) with the least support value, not the ray: it is sound, and
 //! takes no further support call. Tests are signs of triple products; none has an absolute epsilon. Only the corner that
-//! a support point replaces is chosen by the products' sizes too ([`choose_corner`]). A support plane that excludes the origin, or passes through it within the contact epsilon, ends the search: the objects are
-//! separated. The direction of a ray through its own support point is stationary, but may be a maximum or a saddle: the
-//! search perturbs it once and continues. If an earlier support plane is lower than the last one, in another valley (see
-//! [`crate::local`]), the search continues there.
+//! a support point replaces is chosen by the products' sizes too ([`choose_corner`]). A support plane that excludes the
+//! origin, or passes through it within the contact epsilon, ends the search: the objects are separated. The direction of a
+//! ray through its own support point is stationary, but may be a maximum or a saddle: the search perturbs it once and
+//! continues. If an earlier support plane is lower than the last one, in another valley (see [`crate::local`]), the search
+//! continues there.
 //!
 //! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `status`: not
 //! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
@@ -223,7 +224,7 @@ impl Portal {
     #[inline]
     fn update(&mut self, w: SupportPlane) {
         let corners = self.planes.each_ref().map(|p| p.point.v);
-        self.planes[choose_corner(corners, &self.ray, &w.point.v)] = w;
+        self.planes[choose_corner(corners, &self.ray, &w.point.v).min(2)] = w;
     }
 
     /// Returns the points of obj1 and obj2 whose difference is the point at which the ray crosses the
