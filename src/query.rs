@@ -173,13 +173,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(());
         };
-        match test_axis(&self.difference, &mut axis)? {
-            Some(_) => {
-                trace::end(None);
-                Err(Stop::Separated(axis))
-            }
-            None => Ok(()),
+        if test_axis(&self.difference, &mut axis)? {
+            trace::end(None);
+            return Err(Stop::Separated(axis));
         }
+        Ok(())
     }
 
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else

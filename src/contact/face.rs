@@ -309,8 +309,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     fn find_corner_beyond_side(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
         // A corner costs up to two queries, and each unknown core one.
         let pending = self.face.samples.iter().filter(|s| !s.has_core).count() as u32;
-        let count = self.query_count + 2;
-        let is_last = count > MAX_QUERIES || count + pending > MAX_QUERIES;
+        let is_last = self.query_count + 2 + pending > MAX_QUERIES;
         if self.face.samples.len() == MAX_CORNERS || is_last {
             return Ok(None);
         }

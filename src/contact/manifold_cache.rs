@@ -4,8 +4,8 @@
 //! Stores the warm start data of the contact manifold of a pair: the directions that reproduce both faces, and the
 //! contacts with their ids.
 //!
-//! 1. *Faces.* For a polygon whose corners are all known, the outward direction of each side, with a
-//!    [`MAX_LEAN`] to its second corner, is queried again; this confirms each corner, and that there is no corner
+//! 1. *Faces.* For a polygon whose corners are all known, the outward direction of each side, leaning by
+//!    [`CACHED_LEAN`] to its second corner, is queried again; this confirms each corner, and that there is no corner
 //!    beyond a side. For other faces the directions that found the corners are queried again.
 //! 2. *Motion.* If the vertices moved as one rigid body within a quarter of the slop, the face is the same.
 //! 3. *Ids.* A contact keeps its id while it moves with either object, within a quarter of the region's size: each
@@ -16,7 +16,7 @@
 use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_DIRECTIONS};
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold::MAX_CONTACTS;
-use crate::contact::tuning::MAX_LEAN;
+use crate::contact::tuning::CACHED_LEAN;
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger};
@@ -89,7 +89,7 @@ fn confirming_samples(
         let tilt = match n {
             1 => THREE_DIRECTIONS[i % 3] * tilt_tan,
             2 if i > 1 => offset(last, corner).normalize() * tilt_tan,
-            _ => outwards(last, corner, 1.0 / tilt_tan, MAX_LEAN) * tilt_tan,
+            _ => outwards(last, corner, 1.0 / tilt_tan, CACHED_LEAN) * tilt_tan,
         };
         FaceSample::new(tilt, *corner)
     };

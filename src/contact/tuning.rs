@@ -59,6 +59,6 @@ pub const MIN_SLOP_REL: f64 = 0.01;
 pub const MIN_SLOP_ROUNDINGS: f64 = 4.0;
 /// Distance, in slops, below which samples may be of one rounded corner. The samples of a ball are 8 slops apart.
 pub const ROUND_CORNER_SLOPS: f64 = 16.0;
-/// Largest lean of the outward direction of a side towards its second corner, and that of cached directions: 3.6°, by which
-/// the face may rotate about the normal. Insensitive: 1/64 to 1/8 tried.
-pub const MAX_LEAN: f64 = 1.0 / 16.0;
+/// Lean of the outward direction of a cached side towards its second corner: 3.6°, by which the face may rotate about the
+/// normal. Insensitive: 1/64 to 1/8 tried.
+pub const CACHED_LEAN: f64 = 1.0 / 16.0;

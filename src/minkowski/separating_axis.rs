@@ -14,8 +14,8 @@
 //! stay separated and turn by 0.1° per frame take 1.29 support points per query (test U14 of
 //! `c-tests/tests/stability/costs.c`).
 //!
-//! Outputs: `Some(n)`: n separates, or the objects touch along n within rounding. `None`: no evaluated axis
-//! separates. In both cases `axis` is the one for the next query; after `None` it is only a guess.
+//! Outputs: true if an evaluated axis separates, or the objects touch along it within rounding. In both cases `axis` is the
+//! one for the next query; if none separated it is only a guess.
 
 use crate::math::{Vec3, unit};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
@@ -23,8 +23,8 @@ use crate::minkowski::tolerance::Scale;
 use crate::minkowski::tuning::{MAX_FAILURES, TARGET_REL};
 use crate::trace;
 
-/// Evaluates `axis`, unit, and, if it does not separate, the rotated axis. Returns the first axis that separates the
-/// objects or along which they touch within rounding; `None` if none does. `axis` becomes that of the next query.
+/// Evaluates `axis`, unit, and, if it does not separate, the rotated axis. Returns whether one separates the objects, or
+/// they touch along it within rounding. `axis` becomes that of the next query.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -32,7 +32,7 @@ use crate::trace;
 pub fn test_axis<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     axis: &mut Vec3,
-) -> Result<Option<Vec3>, Fault> {
+) -> Result<bool, Fault> {
     trace::stage("separating axis");
     let mut scale = Scale::default();
     for _ in 0..MAX_FAILURES {
@@ -49,10 +49,10 @@ pub fn test_axis<A: SupportMap, B: SupportMap>(
         }
         // NaN counts as separated.
         if !scale.is_depth(-separation) {
-            return Ok(Some(n));
+            return Ok(true);
         }
     }
-    Ok(None)
+    Ok(false)
 }
 
 #[cfg(test)]
@@ -88,7 +88,7 @@ mod tests {
             let md = difference(ball(Vec3::zeros(), 1.0), ball(r.direction(), 0.5));
             let mut axis = r.direction();
             let found = test_axis(&md, &mut axis).unwrap();
-            assert!(found.is_none() && (axis.norm() - 1.0).abs() < 1e-12);
+            assert!(!found && (axis.norm() - 1.0).abs() < 1e-12);
         }
     }
 }

@@ -101,7 +101,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     contacts: *mut ccd_contact_t,
     max: c_int,
 ) -> c_int {
-    if ccd.is_null() || contacts.is_null() || max < 1 || !(slop >= 0.0) {
+    if contacts.is_null() || max < 1 || !(slop >= 0.0) {
         return CCD_BAD_INPUT;
     }
     // SAFETY: [inputs].
