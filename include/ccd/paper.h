@@ -2,8 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* Provides the method of W. Gao, Efficient Incremental Penetration Depth Estimation between Convex
- * Geometries (2023), as published, for comparisons. ccdPenetrationLocal of warm.h also
- * computes a local minimum, with fewer support points, and ccdPenetration the global one. cbindgen makes
+ * Geometries (2023), as published, for comparisons. ccdPenetrationLocal of warm.h also computes a
+ * local minimum, with fewer support points, and ccdPenetration the global one. cbindgen makes
  * include/ccd/paper.h from src/ffi/paper.rs; edit there. */
 
 #ifndef __CCD_PAPER_H__
@@ -17,8 +17,8 @@ extern "C" {
 
 /**
  * Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
- * shortcut of its Section III-C. The result is sound: depth is the least support value evaluated, and an overlap is
- * proven.
+ * shortcut of its Section III-C. The result is sound: depth is the least support value evaluated,
+ * and an overlap is proven.
  *
  * `warm`: may be NULL. `want`: CCD_WANT_ flags.
  *

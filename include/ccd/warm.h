@@ -111,7 +111,8 @@ extern "C" {
 
 /**
  * Two points of a support function contradict each other, or a center is outside its object.
- * depth is sound for the points that were returned; nothing is proven, and depth_lower is 0. ccdCheck finds such faults.
+ * depth is sound for the points that were returned; nothing is proven, and depth_lower is 0.
+ * ccdCheck finds such faults.
  */
 #define CCD_STATUS_INCONSISTENT_SUPPORT 4
 
@@ -247,8 +248,7 @@ typedef struct ccd_penetration_t {
  *
  * `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
  * point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for only depth, bound
- * and directions. Centers save support points; overlap and depth_lower rely on
- * them.
+ * and directions. Centers save support points; overlap and depth_lower rely on them.
  *
  * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
  * depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.

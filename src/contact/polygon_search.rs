@@ -23,8 +23,8 @@ use crate::minkowski::support::{Fault, SupportMap};
 pub const MAX_CORNERS: usize = 10;
 /// Largest number of steps of its search: each corner is found once and each side closed once.
 const MAX_STEPS: usize = 2 * MAX_CORNERS + 4;
-/// Least drop of both ends of a side beyond which no corner is in the overlap: between two directions tilted by T a surface
-/// whose radius is the extent rises by TILT_FACTOR² / 2 depths at most.
+/// Least drop of both ends of a side, in depths, beyond which no corner is in the overlap: between two directions tilted by T
+/// a surface whose radius is the extent rises by TILT_FACTOR² / 2 depths at most.
 const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
 
 impl<A: SupportMap, B: SupportMap> FeatureQuery<'_, A, B> {

@@ -40,5 +40,6 @@ pub const CCD_STATUS_SUPPORT_LIMIT: c_int = 2;
 /// CCD_STATUS_ITERATION_LIMIT.
 pub const CCD_STATUS_ROUNDING: c_int = 3;
 /// Two points of a support function contradict each other, or a center is outside its object.
-/// depth is sound for the points that were returned; nothing is proven, and depth_lower is 0. ccdCheck finds such faults.
+/// depth is sound for the points that were returned; nothing is proven, and depth_lower is 0.
+/// ccdCheck finds such faults.
 pub const CCD_STATUS_INCONSISTENT_SUPPORT: c_int = 4;

@@ -84,8 +84,7 @@ impl From<Penetration> for ccd_penetration_t {
 ///
 /// `warm`: the pair's state, may be NULL; with a state a pair that stays apart costs one support
 /// point, and an overlap fewer than a cold start. `want`: CCD_WANT_ flags; 0 for only depth, bound
-/// and directions. Centers save support points; overlap and depth_lower rely on
-/// them.
+/// and directions. Centers save support points; overlap and depth_lower rely on them.
 ///
 /// Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
 /// depth, the larger of the two; with CCD_LIMIT it is a sound upper bound. Allocates nothing.
