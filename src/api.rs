@@ -22,7 +22,7 @@ use crate::minkowski::validate as check;
 pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
 pub use crate::query::signed_distance::DistanceOptions;
-use crate::query::{Pair, Solver, direction};
+use crate::query::{Pair, Solver, unit_direction};
 use crate::types;
 pub use crate::types::{Settings, Status};
 
@@ -397,7 +397,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     cache: Option<&mut ManifoldCache>,
     room: &'r mut [Contact],
 ) -> Result<&'r [Contact], Error> {
-    let normal = direction(&from_real(normal))?;
+    let normal = unit_direction(&from_real(normal))?;
     if !(slop >= 0.0) || room.is_empty() {
         return Err(Error::ContactOptions);
     }

@@ -70,8 +70,8 @@ impl Solver {
     #[inline(always)]
     fn normalised(self) -> Result<Self, Fault> {
         Ok(match self {
-            Solver::Along(dir) => Solver::Along(direction(&dir)?),
-            Solver::Planar(normal) => Solver::Planar(direction(&normal)?),
+            Solver::Along(dir) => Solver::Along(unit_direction(&dir)?),
+            Solver::Planar(normal) => Solver::Planar(unit_direction(&normal)?),
             solver => solver,
         })
     }
@@ -81,7 +81,7 @@ impl Solver {
 ///
 /// # Errors
 /// [`Fault::Direction`].
-pub fn direction(dir: &Vec3) -> Result<Vec3, Fault> {
+pub fn unit_direction(dir: &Vec3) -> Result<Vec3, Fault> {
     unit(dir).ok_or(Fault::Direction)
 }
 

@@ -82,7 +82,7 @@ struct Proof {
 }
 
 /// The state of a query.
-struct Solver<'q, 'm, A, B> {
+struct EpaSolver<'q, 'm, A, B> {
     query: &'q mut SupportQuery<'m, A, B>,
     request: &'q EpaRequest<'q>,
     /// The interior point, and the points of the objects whose difference it is.
@@ -125,7 +125,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     if is_warm && (is_round || !(state.depth > 0.0)) {
         query.evaluate(set, &request.ray)?;
     }
-    let mut solver = Solver {
+    let mut solver = EpaSolver {
         query,
         request,
         interior: request.center.copied().unwrap_or_default(),
@@ -168,7 +168,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     })
 }
 
-impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
+impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     /// Runs steps 2 to 4, and stores the proof if there is one. Returns the portal; `None` with a proof, or if none was
     /// found. Not inlined, so that its frame is released before a polytope is made.
     #[inline(never)]
@@ -406,7 +406,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
     }
 
     /// Continues an expansion in the large buffers and, if these become full, in those of the arena if there is one.
-    /// Returns as [`Solver::compute_result`].
+    /// Returns as [`EpaSolver::compute_result`].
     #[cold]
     #[inline(never)]
     fn expand_large(
@@ -431,7 +431,7 @@ impl<A: SupportMap, B: SupportMap> Solver<'_, '_, A, B> {
         }
     }
 
-    /// Continues an expansion in the buffers of an arena. Returns as [`Solver::compute_result`].
+    /// Continues an expansion in the buffers of an arena. Returns as [`EpaSolver::compute_result`].
     #[cold]
     #[inline(never)]
     fn expand_in_arena(&mut self, buffers: &mut EpaBuffers) -> Result<Status, Stop> {

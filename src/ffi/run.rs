@@ -35,7 +35,7 @@ pub unsafe fn run_query(
     warm: *mut ccd_warm_t,
     want: c_uint,
 ) -> Result<Penetration, Stop> {
-    // SAFETY: the caller's guarantees are those of the callees.
+    // SAFETY: the caller's guarantees are those of the callees; the buffers are dropped once, after their last use.
     unsafe {
         let pair = args.pair(interface, &solver, want)?;
         let mut state = read(warm);
