@@ -15,9 +15,8 @@ use super::libraries::Libraries;
 use super::methods::{Answer, Interface, Method, Start};
 use super::scene::{Pair, Scene};
 
-/// One method on one scene. Lengths in metres; columns that a file lacks are zero or none.
+/// One method on one scene. Lengths in metres.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(default)]
 pub struct Row {
     pub set: String,
     pub method: String,
