@@ -37,10 +37,10 @@ use crate::trace;
 /// the surface of D, and few loops take forty; later steps only change rounding errors. Insensitive: 24 to 100.
 pub const MAX_STEPS: u32 = 100;
 
-/// The tangent of the angle between the ray and the directions of the widest ring, which are perpendicular to each other.
-/// Measured on deep overlaps: 1.7 takes the same instructions; with 2.8, those of a regular tetrahedron, the position of a
-/// cylinder that slides on a plate jumps (test `continuity`).
-pub const WIDEST_RING_TAN: f64 = core::f64::consts::SQRT_2;
+/// The tangent of the angle between the ray and the directions of the widest ring: 60°. Measured on deep overlaps:
+/// perpendicular directions (1.41) take up to 2 % more instructions. With these in single precision, and with those of a
+/// regular tetrahedron (2.83), the position of a cylinder that slides on a plate jumps (test `continuity`).
+pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
