@@ -38,7 +38,7 @@ use crate::epa::buffers::{
 use crate::epa::expand::{EpaLimits, expand};
 use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, witness_points};
-use crate::geometry::plane::Tetrahedron;
+use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
 use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
 use crate::math::{Vec3, larger, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
@@ -290,17 +290,16 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     ) -> Result<bool, Stop> {
         let [a, b, c] = portal.each_ref().map(|v| v.w);
         let scale = &self.query.scale;
-        let ulp = f64::EPSILON * scale.size();
+        let size = scale.size();
         let tolerance = scale.tolerance(self.request.limits.gap.tolerance);
         let allowed = self.allowed_gap();
-        let Some(tetrahedron) = Tetrahedron::new([self.interior.v, a, b, c], ulp) else {
+        let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
+        // A lower bound of at most the contact epsilon proves no overlap.
+        let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
+        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
             return Ok(false);
         };
-        let lower = tetrahedron.inner_radius() - tetrahedron.error - scale.support_eps();
-        // A lower bound of at most the contact epsilon proves no overlap.
-        if !(lower > larger(self.query.upper.depth - allowed, scale.contact_eps())) {
-            return Ok(false);
-        }
+        let lower = distance - error;
         if self.is_warm && self.query.upper.depth - lower > tolerance {
             let normal = (b - a).cross(&(c - a));
             self.refine_direction(set, portal, &normal)?;

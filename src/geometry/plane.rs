@@ -201,6 +201,35 @@ impl Tetrahedron {
     }
 }
 
+/// Returns the distance of the plane of `base` from the origin, metres, if it is more than `least`, not negative, and
+/// the ball of that radius around the origin is in the tetrahedron of `apex` and `base`, within the error of planes
+/// ([`PLANE_ERROR_ULPS`]); `None` otherwise, also if another face is closer than the base, or nearly so. The corners of
+/// `base` are in the order in which their normal points away from `apex`. `size`: the size of D, metres.
+///
+/// It needs one of the four square roots and divisions of a [`Tetrahedron`].
+#[inline(always)]
+pub fn base_distance(apex: &Vec3, base: &[Vec3; 3], least: f64, size: f64) -> Option<f64> {
+    let [a, b, c] = base;
+    let normal = (b - a).cross(&(c - a));
+    let offset = lesser(lesser(normal.dot(a), normal.dot(b)), normal.dot(c));
+    let distance = offset / normal.norm();
+    // The error of the products below.
+    let margin = MIN_VOLUME_ULPS * f64::EPSILON * size * size * size;
+    // Whether the plane of apex, p and q is farther; its inward normal is (p − apex) × (q − apex).
+    let is_farther = |p: &Vec3, q: &Vec3| {
+        let n = (p - apex).cross(&(q - apex));
+        let d = -n.dot(apex) - margin;
+        d > 0.0 && d * d >= distance * distance * n.norm_squared()
+    };
+    // Written for NaN.
+    let is_in = distance > least
+        && normal.dot(apex) < 0.0
+        && is_farther(a, b)
+        && is_farther(b, c)
+        && is_farther(c, a);
+    is_in.then_some(distance)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -237,6 +266,40 @@ mod tests {
                     .all(|p| p.offset() - p.normal().dot(&made.middle) >= made.interior_clearance)
             );
         }
+    }
+
+    /// Compares with the planes of random tetrahedra, many of which do not contain the origin.
+    #[test]
+    fn the_base_distance_is_that_of_the_closest_plane() {
+        let mut r = crate::shapes::Random::new(5);
+        let mut found = [0; 2];
+        for _ in 0..20000 {
+            let apex = r.vector(0.5) - Vec3::z() * r.within(0.5, 2.0);
+            let [a, mut b, mut c] = [0.0, 2.1, 4.2].map(|angle: f64| {
+                let radial = Vec3::new(angle.cos(), angle.sin(), 0.0);
+                radial * r.within(0.2, 2.0) + r.vector(0.5) + Vec3::z() * r.within(0.1, 0.5)
+            });
+            if (b - a).cross(&(c - a)).dot(&(a - apex)) < 0.0 {
+                (b, c) = (c, b);
+            }
+            let size = [apex, a, b, c].iter().fold(0.0, |s, p| larger(p.norm(), s));
+            let Some(planes) = Tetrahedron::new([apex, a, b, c], f64::EPSILON * size) else {
+                continue;
+            };
+            let (inner, base) = (planes.inner_radius(), planes.planes[2].offset());
+            let distance = base_distance(&apex, &[a, b, c], 0.1, size);
+            // An origin on the outer side of the base is not in the tetrahedron.
+            let is_outside = base_distance(&apex, &[a, b, c], 0.0, size).is_none();
+            assert!(inner > 0.0 || is_outside);
+            if inner == base && base > 0.1 + 1e-9 {
+                found[0] += 1;
+                assert!((distance.unwrap() - inner).abs() <= 2.0 * planes.error);
+            } else if base < 0.1 - 1e-9 || inner < base - 1e-9 {
+                found[1] += 1;
+                assert!(distance.is_none());
+            }
+        }
+        assert!(found[0] > 1000 && found[1] > 1000, "{found:?}");
     }
 
     #[test]

@@ -26,7 +26,7 @@ use crate::geometry::barycentric;
 use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{CONFIRM_TILT_RAD, MAX_FAILURES, SMALL_PART};
+use crate::minkowski::tuning::{CONFIRM_TILT_RAD, MAX_FAILURES, MAX_RING_RATIO, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
@@ -253,7 +253,7 @@ impl SphereFit {
             }
         });
         let least = lesser(lesser(sines[0], sines[1]), sines[2]);
-        let ratio = (1.0 + k) / (1.0 - k);
+        let ratio = lesser((1.0 + k) / (1.0 - k), MAX_RING_RATIO);
         // Faces as wide as the first ring are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
         let tilt = (ratio * least).max(first);

@@ -38,6 +38,12 @@ pub const LARGE_PART: f64 = 1.0 - SMALL_PART;
 /// cylinders take 3 % fewer support points.
 pub const MAX_FAILURES: u32 = 5;
 
+// Models of D.
+
+/// The largest ratio of the widths of two rings. Measured: without it 14 % more support points in proofs to 1e-10 m of shallow
+/// round pairs, 1.5 % more instructions of warm hits.
+pub const MAX_RING_RATIO: f64 = 100.0;
+
 // The separating axis.
 
 /// The separation at which an axis is aimed, relative to the size of D. Measured (test U14 of
