@@ -196,7 +196,7 @@ static const struct {
     double jumps;    /* in 1000 steps */
 } RESTS[] = {{"stands on a floor", 1, 1, {1e-5, 1e-3}, 2, 0.05},
              {"stands on a body", 1, 0, {1e-5, 1e-3}, PATH, 0.2},
-             {"any way on either", 0, -1, {1e-5, 1e-3}, PATH, 0.5},
+             {"any way on either", 0, -1, {1e-5, 1e-3}, PATH, 1},
              {"any way, deeper", 0, -1, {1e-3, 5e-2}, PATH, 3}};
 enum { REST_COUNT = sizeof RESTS / sizeof *RESTS };
 
