@@ -434,9 +434,10 @@ static void check_jumps(int steps, int seed)
                 jumps_of[m] += w->jumps;
             }
             printf(" %7.3f %7.3f %5.2f %3.0f\n", 1e3 * rms(&error), 1e3 * error.worst, cost.sum / cost.count, cost.worst);
-            /* As <ccd/warm.h> says; in single precision the depths are larger, and so are the tilts. */
-            const double corners = (k > 4 && k < BODY_CAPSULE ? k : 3) + 0.5 * single;
-            CHECK(cost.sum / cost.count <= (m ? 12 + single : corners) && cost.worst <= 20, "%s %s: support points", body_name[k], RESTS[m].name);
+            /* Means as <ccd/warm.h> says, of many poses; in single precision the depths are larger, and so are the tilts. */
+            const double corners = (k > 4 && k < BODY_CAPSULE ? k : 3) + 0.5 * single, mean = cost.sum / cost.count;
+            CHECK((cost.count < 100 || mean <= (m ? 12 + single : corners)) && cost.worst <= 20,
+                  "%s %s: %.2f support points, at most %.0f", body_name[k], RESTS[m].name, mean, cost.worst);
             /* And of faces of 3 to 10 corners on a floor. */
             if (m == 0 && (k == BODY_BOX || (k >= BODY_PRISM && k < BODY_CAPSULE))) {
                 CHECK(rms(&error) < (single ? 1e-3 : 1e-4) && error.worst < (single ? 2e-3 : 5e-4), "%s: error", body_name[k]);
