@@ -11,7 +11,7 @@
 //! 3. Query the direction from the simplex to the origin, or the direction in which the sphere fits
 //!    ([`SphereFit`]) predict the support plane closest to the origin; the prediction is exact at once for
 //!    polytopes rounded by a sphere.
-//! 4. The queried direction is limited to 45 degrees from the normal of the best plane found so far: a
+//! 4. The queried direction is limited to [`MAX_EXTRAPOLATION_TAN`] from the normal of the best plane found so far: a
 //!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
 //! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the
 //!    distance is proven to be larger than `max_distance`.
@@ -25,7 +25,7 @@ use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{MAX_FAILURES, SMALL_PART};
+use crate::minkowski::tuning::{MAX_EXTRAPOLATION_TAN, MAX_FAILURES, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
@@ -211,17 +211,17 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         n.dot(&(w - self.simplex.corners()[0].w))
     }
 
-    /// Returns the direction 45 degrees from the best plane's normal towards unit `dir`; `None` if `dir` itself is within
-    /// that angle. Measured (U15 of c-tests/tests/stability/costs.c): distances take 5 % fewer support points.
+    /// Returns the direction [`MAX_EXTRAPOLATION_TAN`] from the best plane's normal towards unit `dir`; `None` if `dir`
+    /// itself is within that angle.
     fn limit_tilt(&self, dir: &Vec3) -> Option<Vec3> {
         let best = self.query.upper.dir;
         let along = dir.dot(&best);
         let perpendicular = dir - best * along;
         let length = perpendicular.norm();
-        if !(length > along) || !(length > 0.0) {
+        if !(length > MAX_EXTRAPOLATION_TAN * along) || !(length > 0.0) {
             return None;
         }
-        unit(&(best + perpendicular / length))
+        unit(&(best + perpendicular * (MAX_EXTRAPOLATION_TAN / length)))
     }
 
     /// Queries the direction in which the sphere fits predict the closest support plane. Returns whether there

@@ -40,6 +40,10 @@ pub const MAX_FAILURES: u32 = 5;
 
 // Models of D.
 
+/// The largest tangent of the angle from the normal of the best plane to a direction that GJK evaluates. Measured: without a
+/// limit distances take 4 to 12 % more support points; with 1.0 two of 2,100 exactly touching pairs take 882 of them (campaign
+/// `wide`, seed 4242).
+pub const MAX_EXTRAPOLATION_TAN: f64 = 0.6;
 /// The largest ratio of the widths of two rings. Measured: without it 14 % more support points in proofs to 1e-10 m of shallow
 /// round pairs, 1.5 % more instructions of warm hits.
 pub const MAX_RING_RATIO: f64 = 100.0;
