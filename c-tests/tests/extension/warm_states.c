@@ -291,13 +291,13 @@ static void check_states(int call)
     /* A state costs no more than none, whatever the pair did before; nor does a guess in a local search, for which it is. */
     CHECK(100 * n.warm <= 102 * n.cold && 100 * n.parted <= 102 * n.warm, "%s: %lu support calls cold, %lu warm, %lu apart before",
           name, n.cold, n.warm, n.parted);
-    CHECK(100 * n.apart_guess <= (call == CALL_LOCAL ? 102 : 115) * n.apart, "%s: %lu support calls apart, %lu from a guess", name,
+    CHECK(100 * n.apart_guess <= (call == CALL_LOCAL ? 102 : 110) * n.apart, "%s: %lu support calls apart, %lu from a guess", name,
           n.apart, n.apart_guess);
     /* A portal's first directions are mirrored with the pair: few searches differ. */
     if (call == CALL_LOCAL || call == CALL_PLANAR)
         CHECK(n.different <= PAIRS / 20, "%s: %d of %d differ from a flipped state", name, n.different, PAIRS);
     if (call == CALL_LOCAL)
-        CHECK(4 * n.warm <= 3 * n.cold, "%s: %lu support calls cold, %lu warm", name, n.cold, n.warm);
+        CHECK(100 * n.warm <= 71 * n.cold, "%s: %lu support calls cold, %lu warm", name, n.cold, n.warm);
     /* The incremental method of the paper converges slowly to minima of round objects. */
     CHECK(n.limited <= (call == CALL_INCREMENTAL ? PAIRS / 16 : PAIRS / 200),
           "%s: %d pairs at the support limit", name, n.limited);
