@@ -15,9 +15,9 @@
 //!    far enough above, evaluate the normal of the portal. Ends if the bounds meet within the tolerance, or if no point
 //!    is above the portal.
 //!
-//! Departures. Directions are evaluated as they are, not in general position
-//! ([`general_position`](crate::minkowski::general_position)): the tilt of a plane that is nearly parallel to the ray
-//! moves its parameter by more than the tolerance.
+//! Departures. Directions are evaluated in general position ([`general_position`](crate::minkowski::general_position)).
+//! A tilt moves the parameter of a plane that is nearly parallel to the ray by more, so normals of the portal are tilted
+//! by less the larger their angle to the ray. The ray itself keeps the caller's direction.
 //!
 //! Outputs. [`Status::Converged`]: the bounds differ by at most the tolerance, along the ray. Any other status: they
 //! are valid. The overlap is not proven here.
@@ -61,7 +61,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     settings: &Settings,
 ) -> Result<Penetration, Stop> {
     trace::stage("ray");
-    let mut query = SupportQuery::new(md, None, 0.0);
+    let mut query = SupportQuery::new(md, None, settings.tolerance);
     let first = query.evaluate_first(dir, false)?;
     set.push(&query.upper.dir, &first);
     let mut portal = [set.farthest_vertex(dir); 3];
@@ -80,6 +80,9 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     } else {
         ray.upper()
     };
+    if !ray.exit_plane.is_general() {
+        ray.query.confirm(&ray.exit_plane)?;
+    }
     Ok(ray.result(&portal, lower))
 }
 
@@ -138,7 +141,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             }
             self.iterations += 1;
             make_room(self.set, portal);
-            let sample = self.query.evaluate(self.set, &(n / n.norm()))?;
+            let length = n.norm();
+            self.query.tolerance = self.settings.tolerance * (along / length);
+            let sample = self.query.evaluate(self.set, &(n / length))?;
             self.note_planes(self.set.len() - 1);
             if !(n.dot(&sample.w) - offset > rounding) {
                 return Ok(lower);
@@ -154,7 +159,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             let point = self.set.point(VertexSet::<N>::pair_of_entry(k));
             let depth = dir.dot(&point.v);
             if depth < self.upper() * self.dir.dot(&dir) {
-                self.exit_plane = SupportPlane { dir, depth, point };
+                self.exit_plane = SupportPlane {
+                    dir,
+                    depth,
+                    point,
+                    tilt: self.query.tilt(),
+                };
             }
         }
     }
@@ -203,6 +213,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             point1,
             point2,
             iterations: self.iterations,
+            is_general: self.exit_plane.is_general(),
             status: status.unless(depth - lower <= self.tolerance()),
             ..Penetration::default()
         }
@@ -213,6 +224,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
+    use crate::minkowski::support_query::Direction;
     use crate::shapes::{
         Random, Rotation, Shape, ball, corners, difference, ellipsoid, hull, placed,
     };
@@ -311,7 +323,9 @@ mod tests {
                 let turn = r.rotation();
                 let points = placed(&corners(half), &turn, turn * at);
                 let count = follow(hull(&points), &(turn * d), exact, tolerance);
-                assert!(count <= 11, "{count}");
+                // One to confirm a direction that the tolerance does not allow to be tilted.
+                let most = if tolerance < 1e-9 { 12 } else { 11 };
+                assert!(count <= most, "{count}");
             }
         }
     }
@@ -382,7 +396,9 @@ mod tests {
             let md = alone(hull(&placed(&corners(half), &r.rotation(), way * 3.0)));
             let mut set = VertexSet::<16>::EMPTY;
             match penetration(&md, &mut set, &-way, &settings) {
-                Err(Stop::Separated(n)) => assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0),
+                Err(Stop::Separated(Direction { n, .. })) => {
+                    assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0)
+                }
                 found => panic!("{found:?}"),
             }
         }

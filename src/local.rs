@@ -123,7 +123,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     start: &Vec3,
-    is_remembered: bool,
+    is_general: bool,
     settings: &Settings,
 ) -> Result<Penetration, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
@@ -140,15 +140,15 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         settings,
         iterations: 0,
     };
-    let ray = walk.start(start, is_remembered)?;
+    let ray = walk.start(start, is_general)?;
     walk.run(ray)
 }
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Evaluates the start direction, and others if it is no good start. Returns the first ray.
-    fn start(&mut self, start: &Vec3, is_remembered: bool) -> Result<Vec3, Stop> {
+    fn start(&mut self, start: &Vec3, is_general: bool) -> Result<Vec3, Stop> {
         trace::stage("local search");
-        let first = self.query.evaluate_first(start, is_remembered)?;
+        let first = self.query.evaluate_first(start, is_general)?;
         self.set.push(&self.query.upper.dir, &first);
         if !self.is_centered {
             // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
@@ -301,6 +301,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                         dir: self.set.dir(sample.pair.a.into()),
                         depth: sample.h,
                         point: self.set.point(sample.pair),
+                        tilt: self.query.tilt(),
                     };
                     return Ok(match is_inside {
                         true => Step::Face(face, plane),
@@ -395,7 +396,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether the two vertices of the upper bound coincide after obj2 is moved by it.
     fn vertices_coincide(&self, tolerance: f64) -> bool {
-        let SupportPlane { depth, dir, point } = self.query.upper;
+        let SupportPlane {
+            depth, dir, point, ..
+        } = self.query.upper;
         (point.v - dir * depth).norm_squared() <= depth * tolerance
     }
 
@@ -498,7 +501,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         plane: &SupportPlane,
         model: Option<Model>,
     ) -> Result<Penetration, Stop> {
-        let SupportPlane { dir, depth, point } = plane;
+        let SupportPlane {
+            dir, depth, point, ..
+        } = plane;
         let (point1, point2) = match model {
             Some(Model::Smooth(_)) => (point.v1, point.v2),
             Some(Model::Sphere) => self.fit.witnesses(self.set, &face.corners, dir).into(),
@@ -514,12 +519,14 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             return Ok(self.upper_bound(Status::InconsistentSupport));
         }
         self.prove_overlap(face)?;
+        self.query.confirm_upper()?;
         let mut hit = Penetration {
             depth: *depth,
             dir: *dir,
             normal: *dir,
             point1,
             point2,
+            is_general: plane.is_general(),
             ..self.upper_bound(Status::Converged)
         };
         // A face and its support plane differ by the rounding of both.
@@ -531,7 +538,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns the upper bound, with the vertices of its support point for witness points.
     fn upper_bound(&self, status: Status) -> Penetration {
-        let SupportPlane { depth, dir, point } = self.query.upper;
+        let SupportPlane {
+            depth, dir, point, ..
+        } = self.query.upper;
         Penetration {
             depth,
             dir,
@@ -540,6 +549,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             point2: point.v2,
             iterations: self.iterations,
             status,
+            is_general: self.query.upper.is_general(),
             ..Penetration::default()
         }
     }
@@ -570,6 +580,7 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
+    use crate::minkowski::support_query::Direction;
     use crate::shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
     };
@@ -663,7 +674,7 @@ mod tests {
                     check(&md, &hit, r);
                 }
                 Ok(_) => {}
-                Err(Stop::Separated(n)) => {
+                Err(Stop::Separated(Direction { n, .. })) => {
                     assert!(n.dot(&md.support(&n).unwrap().v) <= 64.0 * EPSILON)
                 }
                 Err(Stop::Fault(fault)) => panic!("{fault:?}"),
@@ -884,7 +895,7 @@ mod tests {
             let md = difference(hull(&plate), ball(at, 0.1));
             for center in [None, Some(-at)] {
                 let (found, _) = walk(&md, center, &-Vec3::z(), &SETTINGS);
-                let Err(Stop::Separated(n)) = found else {
+                let Err(Stop::Separated(Direction { n, .. })) = found else {
                     panic!("{found:?}");
                 };
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);

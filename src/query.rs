@@ -28,9 +28,12 @@ use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
+use crate::minkowski::general_position::{
+    HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, in_general_position, tilted_in_plane,
+};
 use crate::minkowski::separating_axis::test_axis;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
+use crate::minkowski::support_query::{Direction, Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::minkowski::warm_start::WarmStart;
@@ -144,7 +147,36 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !matches!(solver, Solver::Distance(_)) {
             self.separate(state)?;
         }
-        let mut found = match solver {
+        let mut found;
+        let mut attempts = 0;
+        loop {
+            found = self.solve(solver, state, arena);
+            attempts += 1;
+            // If points contradict each other, once more from a cold state, with all directions tilted.
+            if attempts == 2 || self.difference.least_tilt() == 0.0 {
+                break;
+            }
+            *state = WarmStart::COLD;
+        }
+        if let Ok(hit) = &mut found {
+            hit.finish(self.difference.supports(), &self.settings);
+        }
+        trace::end(found.as_ref().ok());
+        found
+    }
+
+    /// Runs the solver.
+    ///
+    /// # Errors
+    /// As [`Pair::run`].
+    #[inline(always)]
+    fn solve(
+        &self,
+        solver: Solver,
+        state: &mut WarmStart,
+        arena: &mut dyn Arena,
+    ) -> Result<Penetration, Stop> {
+        match solver {
             Solver::Intersect => self.intersect(state),
             Solver::Global => {
                 let limits = EpaLimits::new(&self.settings, GAP_REL, MAX_DEFAULT_POINTS);
@@ -156,12 +188,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             Solver::Planar(normal) => self.incremental(Some(normal), state),
             Solver::Incremental => self.incremental(None, state),
             Solver::Distance(options) => self.signed_distance(options, state, arena),
-        };
-        if let Ok(hit) = &mut found {
-            hit.finish(self.difference.supports(), &self.settings);
         }
-        trace::end(found.as_ref().ok());
-        found
     }
 
     /// Evaluates the separating axis of the last query, if there is one.
@@ -173,9 +200,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(());
         };
+        if !state.is_general {
+            axis = in_general_position(&axis);
+        }
         if test_axis(&self.difference, &mut axis)? {
             trace::end(None);
-            return Err(Stop::Separated(axis));
+            return Err(Stop::Separated(Direction {
+                n: axis,
+                tilt: MIN_TILT_RAD,
+            }));
         }
         Ok(())
     }
@@ -215,7 +248,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         query.scale.note(&witness);
         // Objects that touch within rounding count as separated, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > query.scale.contact_eps()) {
-            return Err(Stop::Separated(hit.normal));
+            return Err(Stop::Separated(Direction {
+                n: hit.normal,
+                tilt: if hit.is_general { MIN_TILT_RAD } else { 0.0 },
+            }));
         }
         if set.len() == 0 {
             // Without a direction: no support call returned this point.
@@ -239,17 +275,15 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not. The result is blank.
     #[inline(always)]
     fn intersect(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        let is_remembered = state.is_overlap();
-        let first = if is_remembered {
-            state.dir
-        } else {
-            self.cold_start()
+        let (first, is_general) = match state.is_overlap() {
+            true => (state.dir, state.is_general),
+            false => (self.cold_start(), false),
         };
         let centers = self.centers.as_ref();
-        let dir = intersect(&self.difference, centers, &first, is_remembered)?;
+        let dir = intersect(&self.difference, centers, &first, is_general)?;
         // A state with a depth, from a penetration query, is more useful: keep it.
         if !(state.is_overlap() && state.depth > 0.0) {
-            *state = WarmStart::towards(dir);
+            *state = WarmStart::towards(dir, HAS_TILT);
         }
         Ok(Penetration::default())
     }
@@ -281,10 +315,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        let is_remembered = remembered.is_some();
-        let mut hit =
-            local::penetration(&mut query, &mut set, &start, is_remembered, &self.settings)?;
-        *state = WarmStart::hit(hit.dir, hit.depth, [0.0; 2]);
+        let is_general = remembered.is_some() && state.is_general;
+        let mut hit = local::penetration(&mut query, &mut set, &start, is_general, &self.settings)?;
+        *state = WarmStart::hit(hit.dir, hit.is_general, hit.depth, [0.0; 2]);
         if hit.status == Status::Converged && self.settings.pos {
             hit.pos = self.contact_position(&set, &hit)?;
         }
@@ -342,7 +375,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut set = VertexSet::EMPTY;
         let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
         self.prove_overlap(&mut hit, &mut set, false)?;
-        *state = WarmStart::towards(hit.normal);
+        *state = WarmStart::towards(hit.normal, hit.is_general);
         hit.pos = hit.middle();
         Ok(hit)
     }
@@ -351,7 +384,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
     /// perpendicular to it are searched.
     fn incremental(&self, plane: Option<Vec3>, state: &mut WarmStart) -> Result<Penetration, Stop> {
-        let start = state.direction().unwrap_or_else(|| self.cold_start());
+        let mut start = state.direction().unwrap_or_else(|| self.cold_start());
+        if let Some(m) = plane.filter(|_| HAS_TILT && !state.is_general) {
+            start = tilted_in_plane(&start, &m, MAX_TILT_RAD);
+        }
         // Each iteration takes one support point; the start, the overlap and the contact position take the rest of the
         // limit of the tests (`call_limit` in c-tests/tests/stability/entries.h).
         let settings = Settings {
@@ -362,7 +398,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut hit = gao::penetration(&self.difference, start, plane, until, &settings, |_| ())?;
         let mut set = VertexSet::EMPTY;
         self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
-        *state = WarmStart::towards(hit.normal);
+        *state = WarmStart::towards(hit.normal, hit.is_general);
         hit.pos = if settings.pos && hit.status == Status::Converged && plane.is_none() {
             self.contact_position(&set, &hit)?
         } else {
@@ -383,11 +419,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Penetration, Stop> {
         let ray = self.cold_start();
-        let is_remembered = state.is_overlap();
-        let dir = if is_remembered { state.dir } else { ray };
+        let (dir, is_general) = match state.is_overlap() {
+            true => (state.dir, state.is_general),
+            false => (ray, false),
+        };
         let mut query = SupportQuery::new(&self.difference, interior, limits.gap.tolerance);
         // Most queries of separated objects end here, before the request is made.
-        let first = query.evaluate_first(&dir, is_remembered)?;
+        let first = query.evaluate_first(&dir, is_general)?;
         let request = EpaRequest {
             center: interior,
             ray,

@@ -109,6 +109,8 @@ pub struct Penetration {
     pub iterations: u64,
     /// Why the search ended.
     pub status: Status,
+    /// True if `normal` is in general position ([`crate::minkowski::general_position`]).
+    pub is_general: bool,
 }
 
 impl Penetration {

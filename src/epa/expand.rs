@@ -169,6 +169,7 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support::Fault;
+    use crate::minkowski::support_query::Direction;
     use crate::minkowski::vertex_set::{Vertex, VertexPair};
     use crate::shapes::{corners, difference, hull};
 
@@ -304,7 +305,7 @@ mod tests {
     fn a_box_beside_the_origin_is_separated() {
         let found = expand_box::<32>(Vec3::new(0.0, 2.5, 0.0), &LIMITS, None);
         assert!(
-            matches!(found, Err(Stop::Separated(n)) if n.y < -0.5),
+            matches!(found, Err(Stop::Separated(Direction { n, .. })) if n.y < -0.5),
             "{found:?}"
         );
     }

@@ -154,7 +154,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     if solver.is_inconsistent {
         (lower, status) = (0.0, Status::InconsistentSupport);
     }
-    *state = WarmStart::hit(dir, depth, solver.fit.confirmed_radius());
+    solver.query.confirm_upper()?;
+    // A direction that was evaluated before the upper bound of a later polytope is tilted by the next query.
+    let is_general = solver.query.upper.is_general() && dir == solver.query.upper.dir;
+    *state = WarmStart::hit(dir, is_general, depth, solver.fit.confirmed_radius());
     Ok(Penetration {
         depth,
         depth_lower: lower.min(depth),
@@ -164,6 +167,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         point2: points[1],
         iterations: solver.iterations,
         status,
+        is_general,
         ..Penetration::default()
     })
 }
@@ -371,7 +375,9 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             None => {
                 // No tetrahedron has a volume: the depth is mostly of the order of rounding. The points that GJK finds
                 // coincide, and are off by the depth; the support points may be less far off.
-                let SupportPlane { dir, depth, point } = self.query.upper;
+                let SupportPlane {
+                    dir, depth, point, ..
+                } = self.query.upper;
                 let mut points = [point.v1, point.v2];
                 if self.request.wants_points && !((point.v - dir * depth).norm() <= depth) {
                     points = self.prove_overlap(&dir)?.witnesses().into();
@@ -560,6 +566,7 @@ mod tests {
     use crate::epa::buffers::{MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference};
+    use crate::minkowski::support_query::Direction;
     use crate::shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
     use crate::types::Settings;
     use core::cell::Cell;
@@ -698,7 +705,8 @@ mod tests {
         for _ in 0..100 {
             let b = placed(&a, &r.rotation(), r.direction() * 3.5);
             let md = difference(hull(&a), hull(&b));
-            let Err(Stop::Separated(n)) = run(&md, None, MAX_PROVEN_POINTS, None) else {
+            let Err(Stop::Separated(Direction { n, .. })) = run(&md, None, MAX_PROVEN_POINTS, None)
+            else {
                 panic!("the boxes do not overlap");
             };
             assert!(md.support(&n).unwrap().v.dot(&n) < 0.0);
@@ -745,7 +753,7 @@ mod tests {
         for center in [None, Some(&center(Vec3::new(0.1, 0.2, 0.0)))] {
             let found = run(&md, center, MAX_PROVEN_POINTS, None);
             assert!(
-                matches!(found, Err(Stop::Separated(n)) if n.z.abs() > 0.999),
+                matches!(found, Err(Stop::Separated(Direction { n, .. })) if n.z.abs() > 0.999),
                 "{found:?}"
             );
         }
@@ -818,7 +826,7 @@ mod tests {
                 }
                 Err(stop) => {
                     assert!(
-                        matches!(stop, Stop::Separated(n) if md.support(&n).unwrap().v.dot(&n) < 1e-5)
+                        matches!(stop, Stop::Separated(Direction { n, .. }) if md.support(&n).unwrap().v.dot(&n) < 1e-5)
                     );
                 }
             }

@@ -51,6 +51,8 @@ pub struct ClosestPoints {
     pub lower: f64,
     /// Its direction, unit.
     pub normal: Vec3,
+    /// True if it is in general position.
+    pub is_general: bool,
     /// The distance of the points, metres.
     pub upper: f64,
     pub point1: Vec3,
@@ -72,7 +74,7 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
     fit: &mut SphereFit,
     start: &Vec3,
-    is_remembered: bool,
+    is_general: bool,
     goal: &Goal,
 ) -> Result<ClosestPoints, Fault> {
     let mut search = ClosestPointsSearch {
@@ -86,13 +88,15 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         is_inside: false,
     };
     let before = search.query.support_points();
-    let status = search.run(goal, start, is_remembered)?;
+    let status = search.run(goal, start, is_general)?;
+    search.query.confirm_upper()?;
     let (point1, point2) = search.points();
     let iterations = search.query.support_points() - before;
     let bound = search.query.upper;
     Ok(ClosestPoints {
         lower: -bound.depth,
         normal: bound.dir,
+        is_general: bound.is_general(),
         upper: (point2 - point1).norm(),
         point1,
         point2,
@@ -132,11 +136,11 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     }
 
     /// Runs the search.
-    fn run(&mut self, goal: &Goal, start: &Vec3, is_remembered: bool) -> Result<Status, Fault> {
+    fn run(&mut self, goal: &Goal, start: &Vec3, is_general: bool) -> Result<Status, Fault> {
         trace::stage("closest points");
         let first = self
             .query
-            .evaluate_signed(&mut self.set, start, is_remembered)?
+            .evaluate_signed(&mut self.set, start, is_general)?
             .vertex();
         self.add(first);
         let mut closest = f64::INFINITY;

@@ -78,10 +78,10 @@ pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     interior: Option<&SupportPoint>,
     first: &Vec3,
-    is_remembered: bool,
+    is_general: bool,
 ) -> Result<Vec3, Stop> {
     let mut query = SupportQuery::new(md, interior, f64::INFINITY);
-    let point = query.evaluate_first(first, is_remembered)?;
+    let point = query.evaluate_first(first, is_general)?;
     intersect_after_first(&mut query, interior, &point)?;
     Ok(query.upper.dir)
 }
@@ -365,6 +365,7 @@ fn evaluate_normals_of_flat<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::math::EPSILON;
+    use crate::minkowski::support_query::Direction;
     use crate::shapes::{Random, ball, corners, difference, hull, placed};
 
     fn test_cold<A: SupportMap, B: SupportMap>(
@@ -492,7 +493,7 @@ mod tests {
             let md = difference(hull(&a), hull(&b));
             let one = test_cold(&md, &dir);
             assert_eq!(one.is_ok(), gap < 0.0, "{gap}");
-            if let Err(Stop::Separated(n)) = one {
+            if let Err(Stop::Separated(Direction { n, .. })) = one {
                 assert!((n.norm() - 1.0).abs() < 8.0 * EPSILON);
                 assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0);
             }

@@ -8,6 +8,7 @@ use core::cell::Cell;
 
 use crate::geometry::barycentric;
 use crate::math::{Vec3, larger, max_abs};
+use crate::minkowski::general_position::MIN_TILT_RAD;
 
 /// A convex object, given by its support function.
 pub trait SupportMap {
@@ -100,6 +101,8 @@ pub struct MinkowskiDifference<A, B> {
     obj2: B,
     /// The number of calls of both objects' support functions.
     calls: Cell<u64>,
+    /// The least tilt of directions, radians; 0 unless the query has found points that contradict each other.
+    least_tilt: Cell<f64>,
 }
 
 impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
@@ -109,6 +112,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
             obj1,
             obj2,
             calls: Cell::new(0),
+            least_tilt: Cell::new(0.0),
         }
     }
 
@@ -141,6 +145,19 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
             0 => self.obj1.support(dir),
             _ => self.obj2.support(&-dir),
         }
+    }
+
+    /// Returns the least tilt of the directions of a query, radians; above 0 after
+    /// [`MinkowskiDifference::tilt_directions`].
+    #[inline(always)]
+    pub fn least_tilt(&self) -> f64 {
+        self.least_tilt.get()
+    }
+
+    /// Makes queries tilt all directions by at least the least useful tilt, whatever their tolerance: a support function
+    /// is wrong in a direction that was evaluated as it is.
+    pub fn tilt_directions(&self) {
+        self.least_tilt.set(MIN_TILT_RAD);
     }
 
     /// Returns the number of support points evaluated: half the number of calls, rounded up.

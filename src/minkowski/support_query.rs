@@ -22,18 +22,37 @@
 //! results that are based on it are discarded. Only evaluated directions can detect this.
 
 use crate::math::{Vec3, from_real, larger, lesser, to_real};
-use crate::minkowski::general_position::{tilt_rad, tilted};
+use crate::minkowski::general_position::{
+    HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, allows_largest_tilt, tilt_rad, tilted,
+};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
 use crate::minkowski::tuning::SMALL_PART;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
 
+/// A direction that the callbacks received.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    /// Unit.
+    pub n: Vec3,
+    /// As in [`SupportPlane::tilt`].
+    pub tilt: f64,
+}
+
+impl Direction {
+    /// Returns whether the direction is in general position.
+    #[inline(always)]
+    pub fn is_general(&self) -> bool {
+        self.tilt > 0.0
+    }
+}
+
 /// Reason why an evaluation of the support function ends the query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stop {
-    /// The objects are separated, or in contact within rounding: the unit vector is a separating axis.
-    Separated(Vec3),
+    /// The objects are separated, or in contact within rounding: the direction is a separating axis.
+    Separated(Direction),
     /// An argument or a callback's point is invalid, or an allocation failed.
     Fault(Fault),
 }
@@ -85,6 +104,34 @@ pub struct SupportPlane {
     pub depth: f64,
     /// The support point along the direction.
     pub point: SupportPoint,
+    /// By how much the direction is tilted into general position
+    /// ([`general_position`](crate::minkowski::general_position)), radians: at least [`MIN_TILT_RAD`], or 0. A number,
+    /// because a `bool` would hold the variant of a `Result`: codegen, see README.
+    pub tilt: f64,
+}
+
+impl SupportPlane {
+    /// Returns the direction.
+    #[inline(always)]
+    pub fn direction(&self) -> Direction {
+        Direction {
+            n: self.dir,
+            tilt: self.tilt,
+        }
+    }
+
+    /// Returns whether the direction is in general position.
+    #[inline(always)]
+    pub fn is_general(&self) -> bool {
+        self.tilt > 0.0
+    }
+
+    /// Returns whether neither plane's point is beyond the other plane by more than rounding, `tie_eps` in metres.
+    pub fn is_consistent(&self, other: &Self, tie_eps: f64) -> bool {
+        let has_farthest =
+            |plane: &Self, other: &Self| plane.dir.dot(&other.point.v) <= plane.depth + tie_eps;
+        has_farthest(self, other) && has_farthest(other, self)
+    }
 }
 
 /// The state of a query: the support function of one pair and the results of its evaluations.
@@ -93,7 +140,7 @@ pub struct SupportQuery<'q, A, B> {
     pub md: &'q MinkowskiDifference<A, B>,
     /// The tolerance that the caller requested, metres, of which the tilt of directions is a share; 0 to evaluate every
     /// direction as it is.
-    tolerance: f64,
+    pub tolerance: f64,
     /// The sizes of the points evaluated so far.
     pub scale: Scale,
     /// The upper bound: the plane of the least support value so far, infinite before the first evaluation. Holds its
@@ -124,6 +171,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
                 depth: f64::INFINITY,
                 dir: Vec3::new(1.0, 0.0, 0.0),
                 point: SupportPoint::default(),
+                tilt: 0.0,
             },
             interior,
         }
@@ -147,21 +195,90 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(point)
     }
 
-    /// Evaluates unit `n` in general position ([`general_position`](crate::minkowski::general_position)), turned by
-    /// `tilt`, radians. If the tilted direction does not separate, but its point does not prove that n does not either,
-    /// evaluates n as it is.
+    /// Returns the tilt of directions that are not in general position, radians.
+    #[inline(always)]
+    pub fn tilt(&self) -> f64 {
+        tilt_rad(self.tolerance, &self.scale, self.md.least_tilt())
+    }
+
+    /// Returns whether the tolerance allows a tilt.
+    pub fn has_tilt(&self) -> bool {
+        self.tilt() > 0.0
+    }
+
+    /// Evaluates unit `n` in general position ([`general_position`](crate::minkowski::general_position)); as it is if
+    /// `is_general`: it is the direction of a state then, and a pair at rest must not turn by a tilt in each query.
+    /// `confirms`: true to confirm a separating plane. The path that most tolerances take is inlined.
+    #[inline(always)]
+    fn evaluate_plane(
+        &mut self,
+        n: &Vec3,
+        is_general: bool,
+        confirms: bool,
+    ) -> Result<SupportPlane, Fault> {
+        if HAS_TILT && (is_general || !allows_largest_tilt(self.tolerance, &self.scale)) {
+            return self.evaluate_with_tilt(*n, is_general, confirms);
+        }
+        let plane = self.evaluate_tilted(n, if HAS_TILT { MAX_TILT_RAD } else { 0.0 })?;
+        if HAS_TILT && self.may_separate(n, &plane) {
+            return self.evaluate_untilted(*n, plane);
+        }
+        Ok(plane)
+    }
+
+    /// Continues [`SupportQuery::evaluate_plane`] with any other tilt than the largest. With none, because the tolerance
+    /// allows none: if the plane and the upper bound contradict each other, the query runs again with all directions
+    /// tilted ([`Pair::run`](crate::query::Pair::run)). (The first direction may be tilted by more than the size allows,
+    /// which is not known yet.)
+    #[inline(never)]
+    fn evaluate_with_tilt(
+        &mut self,
+        n: Vec3,
+        is_general: bool,
+        confirms: bool,
+    ) -> Result<SupportPlane, Fault> {
+        if is_general {
+            let plane = self.evaluate_tilted(&n, 0.0)?;
+            let tilt = MIN_TILT_RAD;
+            return Ok(SupportPlane { tilt, ..plane });
+        }
+        let plane = self.evaluate_tilted(&n, self.tilt())?;
+        if plane.is_general() {
+            return match self.may_separate(&n, &plane) {
+                true => self.evaluate_untilted(n, plane),
+                false => Ok(plane),
+            };
+        }
+        let is_first = !(self.upper.depth < f64::INFINITY);
+        if !is_first && !plane.is_consistent(&self.upper, self.scale.tie_eps()) {
+            self.md.tilt_directions();
+        }
+        if confirms && !self.scale.is_depth(plane.depth) {
+            self.confirm(&plane)?;
+        }
+        Ok(plane)
+    }
+
+    /// Evaluates unit `n` turned by `tilt`, radians.
     #[inline(always)]
     fn evaluate_tilted(&mut self, n: &Vec3, tilt: f64) -> Result<SupportPlane, Fault> {
-        let mut dir = representable(&tilted(n, tilt));
-        let mut point = self.evaluate_point(&dir)?;
-        let mut depth = dir.dot(&point.v);
-        let is_depth = |h: f64| self.scale.is_depth(h);
-        if tilt > 0.0 && is_depth(depth) && !is_depth(n.dot(&point.v)) {
-            let plane = SupportPlane { dir, depth, point };
-            SupportPlane { dir, depth, point } = self.evaluate_untilted(*n, plane)?;
-        }
+        let dir = representable(&tilted(n, tilt));
+        let point = self.evaluate_point(&dir)?;
+        let depth = dir.dot(&point.v);
         trace::direction(&dir, depth, lesser(depth, self.upper.depth));
-        Ok(SupportPlane { dir, depth, point })
+        Ok(SupportPlane {
+            dir,
+            depth,
+            point,
+            tilt,
+        })
+    }
+
+    /// Returns whether the tilted direction of unit `n` does not separate, but its point does not prove that n does not
+    /// either.
+    #[inline(always)]
+    fn may_separate(&self, n: &Vec3, tilted: &SupportPlane) -> bool {
+        self.scale.is_depth(tilted.depth) && !self.scale.is_depth(n.dot(&tilted.point.v))
     }
 
     /// Evaluates unit `n` as it is after `tilted`. Returns `tilted` if the two points contradict each other. Takes
@@ -170,37 +287,60 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     #[inline(never)]
     fn evaluate_untilted(&mut self, n: Vec3, tilted: SupportPlane) -> Result<SupportPlane, Fault> {
         let exact = self.evaluate_tilted(&n, 0.0)?;
-        let tie = self.scale.tie_eps();
-        let has_farthest = |plane: &SupportPlane, other: &SupportPlane| {
-            plane.dir.dot(&other.point.v) <= plane.depth + tie
-        };
-        let is_consistent = has_farthest(&exact, &tilted) && has_farthest(&tilted, &exact);
+        let is_consistent = exact.is_consistent(&tilted, self.scale.tie_eps());
         Ok(if is_consistent { exact } else { tilted })
     }
 
-    /// Returns the tilt of a direction, radians; 0 if an earlier query has evaluated it (`is_remembered`): it is in general
-    /// position, and a pair at rest must not turn by a tilt in each query.
+    /// Confirms the plane of the upper bound, the result of a query.
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
     #[inline(always)]
-    fn tilt(&self, is_remembered: bool) -> f64 {
-        if is_remembered {
-            0.0
-        } else {
-            tilt_rad(self.tolerance, &self.scale)
+    pub fn confirm_upper(&mut self) -> Result<(), Fault> {
+        if HAS_TILT && !self.upper.is_general() {
+            return self.confirm_upper_cold();
         }
+        Ok(())
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn confirm_upper_cold(&mut self) -> Result<(), Fault> {
+        let upper = self.upper;
+        self.confirm(&upper)
+    }
+
+    /// Confirms a plane whose direction is not in general position: evaluates the tilted direction. If the two points
+    /// contradict each other, the query runs again with all directions tilted ([`Pair::run`](crate::query::Pair::run)).
+    ///
+    /// # Errors
+    /// [`Fault::NonFinite`].
+    #[cold]
+    #[inline(never)]
+    pub fn confirm(&mut self, exact: &SupportPlane) -> Result<(), Fault> {
+        // If the tolerance allows a tilt, the plane was chosen beside a tilted one.
+        if self.has_tilt() {
+            return Ok(());
+        }
+        let tilted = self.evaluate_tilted(&exact.dir, MIN_TILT_RAD)?;
+        if !exact.is_consistent(&tilted, self.scale.tie_eps()) {
+            self.md.tilt_directions();
+        }
+        Ok(())
     }
 
     /// Evaluates the first direction, before there is a vertex set. Most queries of separated objects end here.
-    /// `is_remembered`: true if an earlier query has evaluated it. The caller adds the point to the set as entry 0, with
-    /// the direction of the upper bound.
+    /// `is_general`: true if it is in general position. The caller adds the point to the set as entry 0, with the
+    /// direction of the upper bound.
     ///
     /// # Errors
     /// [`Stop::Separated`], [`Fault::NonFinite`].
     #[inline(always)]
-    pub fn evaluate_first(&mut self, n: &Vec3, is_remembered: bool) -> Result<SupportPoint, Stop> {
-        let plane = self.evaluate_tilted(n, self.tilt(is_remembered))?;
+    pub fn evaluate_first(&mut self, n: &Vec3, is_general: bool) -> Result<SupportPoint, Stop> {
+        let plane = self.evaluate_plane(n, is_general, true)?;
         // Negated for NaN.
         if !self.scale.is_depth(plane.depth) {
-            return Err(Stop::Separated(plane.dir));
+            return Err(Stop::Separated(plane.direction()));
         }
         self.store_upper(&plane);
         Ok(plane.point)
@@ -216,16 +356,16 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         set: &mut VertexSet<N>,
         n: &Vec3,
     ) -> Result<SupportSample, Stop> {
-        let plane = self.evaluate_tilted(n, self.tilt(false))?;
+        let plane = self.evaluate_plane(n, false, true)?;
         // Negated for NaN.
         if !self.scale.is_depth(plane.depth) {
-            return Err(Stop::Separated(plane.dir));
+            return Err(Stop::Separated(plane.direction()));
         }
         Ok(self.store_sample(set, &plane))
     }
 
     /// Evaluates like [`SupportQuery::evaluate`], for a query that continues after a separating axis: the upper
-    /// bound is then negative. `is_remembered`: as in [`SupportQuery::evaluate_first`].
+    /// bound is then negative. `is_general`: as in [`SupportQuery::evaluate_first`].
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -234,9 +374,9 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
         n: &Vec3,
-        is_remembered: bool,
+        is_general: bool,
     ) -> Result<SupportSample, Fault> {
-        let plane = self.evaluate_tilted(n, self.tilt(is_remembered))?;
+        let plane = self.evaluate_plane(n, is_general, false)?;
         Ok(self.store_sample(set, &plane))
     }
 
@@ -313,13 +453,17 @@ mod tests {
         assert_eq!((first.h, first.w), (2.0, set.difference(first.pair)));
         let second = query.evaluate(&mut set, &Vec3::x()).unwrap();
         assert_eq!(second.w, Vec3::x() * 0.5);
-        let SupportPlane { depth, dir, point } = query.upper;
+        let SupportPlane {
+            depth, dir, point, ..
+        } = query.upper;
         assert_eq!((depth, dir, point.v), (0.5, Vec3::x(), second.w));
         assert_eq!(query.support_points(), 2);
         // The upper bound does not depend on the set.
         set.truncate(1);
         query.evaluate(&mut set, &Vec3::y()).unwrap();
-        let SupportPlane { depth, dir, point } = query.upper;
+        let SupportPlane {
+            depth, dir, point, ..
+        } = query.upper;
         assert_eq!(
             (depth, dir, point.v1 - point.v2),
             (0.5, Vec3::x(), second.w)
@@ -333,10 +477,16 @@ mod tests {
             let md = difference(ball(Vec3::zeros(), 1.0), other);
             let mut set = VertexSet::<4>::EMPTY;
             let mut query = SupportQuery::new(&md, None, 0.0);
+            let direction = |tilt| Direction { n: Vec3::x(), tilt };
+            let expected = Stop::Separated(direction(0.0));
             let stop = query.evaluate(&mut set, &Vec3::x()).unwrap_err();
-            assert_eq!(stop, Stop::Separated(Vec3::x()));
+            assert_eq!(stop, expected);
             let stop = query.evaluate_first(&Vec3::x(), false).unwrap_err();
-            assert_eq!(stop, Stop::Separated(Vec3::x()));
+            assert_eq!(stop, expected);
+            // The direction of a state is known to be in general position.
+            let stop = query.evaluate_first(&Vec3::x(), true).unwrap_err();
+            let tilt = if HAS_TILT { MIN_TILT_RAD } else { 0.0 };
+            assert_eq!(stop, Stop::Separated(direction(tilt)));
         }
     }
 
@@ -351,7 +501,10 @@ mod tests {
             let mut query = SupportQuery::new(&md, None, 1e-6);
             let mut set = VertexSet::<4>::EMPTY;
             let found = query.evaluate(&mut set, &Vec3::z());
-            let expected = Err(Stop::Separated(Vec3::z()));
+            let expected = Err(Stop::Separated(Direction {
+                n: Vec3::z(),
+                tilt: 0.0,
+            }));
             assert!(if is_separated {
                 found == expected
             } else {
@@ -388,6 +541,35 @@ mod tests {
         };
         set.push(&Vec3::x(), &wrong);
         assert!(query.is_inconsistent(&set));
+    }
+
+    /// The same disc, and a tolerance that allows no tilt: the separation and the upper bound are not confirmed.
+    #[test]
+    #[cfg(not(feature = "single"))]
+    fn a_point_that_is_not_confirmed_makes_the_query_run_again() {
+        for wrong in [-0.05, 0.05, 0.0] {
+            let disc = move |n: &Vec3| {
+                let r = n.x.hypot(n.y);
+                if r < 1e-12 {
+                    Vec3::z() * wrong
+                } else {
+                    Vec3::new(n.x / r, n.y / r, 0.0)
+                }
+            };
+            let md = difference(disc, |_: &Vec3| Vec3::z() * -0.01);
+            let mut query = SupportQuery::new(&md, None, 0.0);
+            let mut set = VertexSet::<4>::EMPTY;
+            if query.evaluate(&mut set, &Vec3::z()).is_ok() {
+                query.confirm_upper().unwrap();
+            }
+            assert_eq!(md.least_tilt() > 0.0, wrong != 0.0);
+            assert_eq!(query.support_points(), 2);
+            // Tilted from here on: the disc is as high as it is.
+            if wrong != 0.0 {
+                let h = query.evaluate(&mut set, &Vec3::z()).unwrap().h;
+                assert!((h - 0.01).abs() < 1e-9, "{h}");
+            }
+        }
     }
 
     #[test]

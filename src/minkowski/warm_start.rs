@@ -10,10 +10,12 @@
 //! | `Separated` | the separating axis ([`crate::minkowski::separating_axis`]) | 0 | sphere radii or 0 |
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
 //!
-//! A radius is 0 unless a prediction of the sphere fits was confirmed.
+//! A radius is 0 unless a prediction of the sphere fits was confirmed. `is_general` tells whether the direction is in
+//! general position ([`crate::minkowski::general_position`]): the next query evaluates it as it is then, and tilts it
+//! otherwise.
 
 use crate::math::{EPSILON, Vec3, ZERO, unit};
-use crate::minkowski::general_position::start_direction;
+use crate::minkowski::general_position::in_general_position;
 use crate::minkowski::support_query::Stop;
 
 /// Result of the last query.
@@ -39,6 +41,8 @@ pub struct WarmStart {
     pub radius: [f64; 2],
     /// Result of the last query.
     pub kind: WarmKind,
+    /// True if the direction is in general position.
+    pub is_general: bool,
 }
 
 /// The largest error of the squared length of a unit vector. Measured on 50 million vectors that were normalised:
@@ -48,6 +52,8 @@ const MAX_UNIT_ERROR: f64 = 4.0 * EPSILON;
 impl WarmStart {
     /// Number of reals in a packed state.
     pub const REALS: usize = 6;
+    /// Number of words in a packed state.
+    pub const WORDS: usize = 2;
 
     /// The state of a pair without an earlier query.
     pub const COLD: Self = Self {
@@ -55,45 +61,47 @@ impl WarmStart {
         depth: 0.0,
         radius: [0.0; 2],
         kind: WarmKind::Cold,
+        is_general: false,
     };
 
     /// Makes the state of an overlap with this penetration direction, unit.
-    pub fn towards(dir: Vec3) -> Self {
-        Self::hit(dir, 0.0, [0.0; 2])
+    pub fn towards(dir: Vec3, is_general: bool) -> Self {
+        Self::hit(dir, is_general, 0.0, [0.0; 2])
     }
 
     /// Makes a state from a guess of the penetration direction, of any length; cold if that is zero or not
-    /// finite. The guess is tilted into general position here, because queries evaluate the direction of a state as it
-    /// is.
+    /// finite. The guess is tilted here, so that a query which is repeated from it does not turn.
     pub fn guess(dir: &Vec3) -> Self {
-        unit(dir).map_or(Self::COLD, |n| Self::towards(start_direction(&n)))
+        unit(dir).map_or(Self::COLD, |n| Self::towards(in_general_position(&n), true))
     }
 
     /// Makes the state of a pair that unit `dir` separates. `radius`: the radii of the sphere fits, metres.
-    pub fn separated(dir: Vec3, radius: [f64; 2]) -> Self {
+    pub fn separated(dir: Vec3, is_general: bool, radius: [f64; 2]) -> Self {
         Self {
             dir,
             depth: 0.0,
             radius,
             kind: WarmKind::Separated,
+            is_general,
         }
     }
 
     /// Makes this the state of separated objects if a query found them separated; solvers set the state of an overlap.
     #[inline(always)]
     pub fn note_separation<R>(&mut self, found: &Result<R, Stop>) {
-        if let Err(Stop::Separated(dir)) = found {
-            *self = Self::separated(*dir, self.radius);
+        if let Err(Stop::Separated(axis)) = found {
+            *self = Self::separated(axis.n, axis.is_general(), self.radius);
         }
     }
 
     /// Makes the state of a hit.
-    pub fn hit(dir: Vec3, depth: f64, radius: [f64; 2]) -> Self {
+    pub fn hit(dir: Vec3, is_general: bool, depth: f64, radius: [f64; 2]) -> Self {
         Self {
             dir,
             depth,
             radius,
             kind: WarmKind::Overlap,
+            is_general,
         }
     }
 
@@ -122,7 +130,7 @@ impl WarmStart {
     }
 
     /// Packs the state into plain numbers. A cold state is all zeros.
-    pub fn pack(&self) -> ([f64; Self::REALS], u32) {
+    pub fn pack(&self) -> ([f64; Self::REALS], [u32; Self::WORDS]) {
         let [x, y, z] = self.dir.into();
         let [radius1, radius2] = self.radius;
         let kind = match self.kind {
@@ -131,15 +139,16 @@ impl WarmStart {
             WarmKind::Overlap => 2,
         };
         let reals = [x, y, z, self.depth, radius1, radius2];
-        (reals, kind)
+        (reals, [kind, self.is_general.into()])
     }
 
     /// Unpacks a state; returns a cold one unless the kind is known, the direction unit, and the lengths such that
     /// solvers can multiply four of them. (Support points that are too large for this are a
     /// [`Fault`](crate::minkowski::support::Fault::NonFinite), so only bodies of more than 1e72 m have larger radii.)
-    pub fn unpack(reals: [f64; Self::REALS], kind: u32) -> Self {
+    pub fn unpack(reals: [f64; Self::REALS], words: [u32; Self::WORDS]) -> Self {
         let [x, y, z, depth, radius1, radius2] = reals;
         let dir = Vec3::new(x, y, z);
+        let [kind, general] = words;
         let kind = match kind {
             1 => WarmKind::Separated,
             2 => WarmKind::Overlap,
@@ -156,6 +165,7 @@ impl WarmStart {
             depth,
             radius: [radius1, radius2],
             kind,
+            is_general: general == 1,
         }
     }
 }
@@ -166,9 +176,9 @@ mod tests {
 
     #[test]
     fn packing_and_unpacking_preserves_a_state() {
-        let state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), 0.25, [1.0, 0.5]);
-        let (reals, kind) = state.pack();
-        let again = WarmStart::unpack(reals, kind);
+        let state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), true, 0.25, [1.0, 0.5]);
+        let (reals, words) = state.pack();
+        let again = WarmStart::unpack(reals, words);
         assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
         let mut flipped = again;
         flipped.flip();
@@ -180,7 +190,7 @@ mod tests {
     #[test]
     fn invalid_numbers_give_a_cold_state() {
         let good = [1.0, 0.0, 0.0, 0.1, 0.0, 0.0];
-        let kind = |reals, kind| WarmStart::unpack(reals, kind).kind;
+        let kind = |reals, kind| WarmStart::unpack(reals, [kind, 1]).kind;
         assert_eq!(kind(good, 2), WarmKind::Overlap);
         assert_eq!(kind(good, 3), WarmKind::Cold);
         assert_eq!(kind([0.0; 6], 0), WarmKind::Cold);

@@ -24,7 +24,8 @@
 //! origin, or passes through it within the contact epsilon, ends the search: the objects are separated. The direction of a
 //! ray through its own support point is stationary, but may be a maximum or a saddle: the search perturbs it once and
 //! continues. If an earlier support plane is lower than the last one, in another valley (see [`crate::local`]), the search
-//! continues there.
+//! continues there. For n = 3 directions are evaluated as they are, for n = 2 in general position within the plane
+//! ([`general_position`](crate::minkowski::general_position)).
 //!
 //! Outputs. `depth`, `dir`: sound if the objects overlap, which is not proven here. `status`: not
 //! converged if the iterations were used up, or rounding ended the search, before a local minimum was found. This is the
@@ -32,6 +33,7 @@
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
+use crate::minkowski::general_position::{MIN_TILT_RAD, tilt_rad, tilted_in_plane};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::tolerance::Scale;
@@ -45,7 +47,7 @@ const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 
 /// Finds a local minimum of the penetration depth from the unit direction `start`: Algorithm 3, or with
 /// [`Until::Shortcut`] Algorithms 4 and 5. `plane_normal`: for a D that lies in a plane, the unit normal of that plane;
-/// the search then starts along the component of `start` in the plane. `on_new_ray` is called with |z| whenever the ray
+/// the search then starts along the component of `start`, in general position, in the plane. `on_new_ray` is called with |z| whenever the ray
 /// changes, for tests.
 ///
 /// # Errors
@@ -62,12 +64,20 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         Some(m) => unit(&(start - m * m.dot(&start))).unwrap_or_else(|| perpendicular(&m)),
         None => start,
     };
-    let ray = support_plane(md, start)?;
+    let ray = SupportPlane {
+        tilt: if plane_normal.is_some() {
+            MIN_TILT_RAD
+        } else {
+            0.0
+        },
+        ..support_plane(md, start)?
+    };
     let mut search = RaySearch {
         md,
         tolerance: settings.tolerance,
         until,
         plane_normal,
+        scale: Scale::default(),
         budget: settings.max_iterations,
         best: ray,
     };
@@ -154,6 +164,7 @@ fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
         normal: plane.dir,
         point1,
         point2,
+        is_general: plane.is_general(),
         ..Penetration::default()
     }
 }
@@ -166,7 +177,12 @@ fn support_plane<A: SupportMap, B: SupportMap>(
 ) -> Result<SupportPlane, Fault> {
     let point = md.support(&dir)?;
     let depth = dir.dot(&point.v);
-    Ok(SupportPlane { dir, depth, point })
+    Ok(SupportPlane {
+        dir,
+        depth,
+        point,
+        tilt: 0.0,
+    })
 }
 
 /// Returns whether a support plane separates the objects, or they touch it within the contact epsilon of its own point.
@@ -287,6 +303,8 @@ struct RaySearch<'q, A, B> {
     until: Until,
     /// For a D that lies in a plane, the unit normal of that plane.
     plane_normal: Option<Vec3>,
+    /// The sizes of the points evaluated so far.
+    scale: Scale,
     /// The iterations left.
     budget: u64,
     /// The support plane with the least support value so far, which may be a separating one.
@@ -301,18 +319,41 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         left
     }
 
-    /// Evaluates the support plane with the unit normal `n`.
+    /// Evaluates the support plane with the unit normal `n`, for n = 2 in general position.
     ///
     /// # Errors
     /// [`Stop::Separated`] for a separating plane; [`Stop::Fault`] for a point that is not finite.
     #[inline]
     fn plane(&mut self, n: Vec3) -> Result<SupportPlane, Stop> {
-        let plane = support_plane(self.md, n)?;
+        let plane = match self.plane_normal {
+            Some(m) => self.tilted_plane(n, &m)?,
+            None => support_plane(self.md, n)?,
+        };
         if plane.depth < self.best.depth {
             self.best = plane;
         }
         if is_separating(&plane) {
-            return Err(Stop::Separated(n));
+            return Err(Stop::Separated(plane.direction()));
+        }
+        Ok(plane)
+    }
+
+    /// Evaluates unit `n`, turned into general position within the plane with unit normal `m`; as it is if the tolerance
+    /// allows no tilt, or only n may separate.
+    fn tilted_plane(&mut self, n: Vec3, m: &Vec3) -> Result<SupportPlane, Fault> {
+        let tilt = tilt_rad(self.tolerance, &self.scale, 0.0);
+        let dir = tilted_in_plane(&n, m, tilt);
+        let plane = SupportPlane {
+            tilt,
+            ..support_plane(self.md, dir)?
+        };
+        self.scale.note(&plane.point);
+        let may_separate = !self.scale.is_depth(n.dot(&plane.point.v));
+        if may_separate && tilt > 0.0 && !is_separating(&plane) {
+            let exact = support_plane(self.md, n)?;
+            if exact.is_consistent(&plane, self.scale.tie_eps()) {
+                return Ok(exact);
+            }
         }
         Ok(plane)
     }
@@ -336,7 +377,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
         let d = first.dir;
         if is_separating(first) {
-            return Err(Stop::Separated(d));
+            return Err(Stop::Separated(first.direction()));
         }
         let size = first.point.magnitude();
         let side = first.point.v.cross(&d);
@@ -384,7 +425,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         m: &Vec3,
     ) -> Result<Result<Portal, RayEnd>, Stop> {
         if is_separating(first) {
-            return Err(Stop::Separated(first.dir));
+            return Err(Stop::Separated(first.direction()));
         }
         let side = unit(&m.cross(&first.dir)).unwrap_or_else(|| perpendicular(m));
         let off = side.dot(&first.point.v);
@@ -418,6 +459,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
                     dir: n,
                     point: portal.planes[0].point,
                     depth: inner,
+                    tilt: 0.0,
                 },
                 evaluated => evaluated?,
             };

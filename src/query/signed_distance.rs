@@ -55,7 +55,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ///
     /// # Errors
     /// [`Stop::Fault`], also for an option that is invalid.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn signed_distance(
         &self,
         options: DistanceOptions,
@@ -77,7 +77,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         // Without a separating plane the overlap test decides, however close the bounds are.
         let is_at_limit = matches!(cores.status, Status::IterationLimit | Status::SupportLimit);
         if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
-            *state = WarmStart::towards(cores.normal);
+            *state = WarmStart::towards(cores.normal, cores.is_general);
             if let Some(hit) = self.depth(state, arena)? {
                 return Ok(with_margins(hit, [margin1, margin2]));
             }
@@ -87,12 +87,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let h = normal.dot(&self.difference.support(&normal)?.v);
             contact_eps = 2.0 * larger(contact_eps, h.abs());
             (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
+            cores.is_general = state.is_general;
             let is_met = cores.upper <= larger(contact_eps, self.settings.tolerance);
             cores.status = Status::Rounding.unless(is_met);
         }
         let tolerance = self.settings.tolerance;
         let found = separated_distance(&cores, contact_eps, tolerance, [margin1, margin2]);
-        *state = WarmStart::separated(cores.normal, radius);
+        *state = WarmStart::separated(cores.normal, cores.is_general, radius);
         Ok(found)
     }
 
@@ -133,7 +134,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         };
         let axis = state.separating_axis();
         let start = axis.unwrap_or_else(|| self.cold_start());
-        let cores = closest_points(&mut query, &mut fit, &start, axis.is_some(), &goal)?;
+        let is_general = axis.is_some() && state.is_general;
+        let cores = closest_points(&mut query, &mut fit, &start, is_general, &goal)?;
         Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
     }
 }
@@ -186,6 +188,7 @@ fn separated_distance(
         point2: cores.point2 - along * margin2,
         iterations: cores.iterations,
         status,
+        is_general: cores.is_general,
         ..Penetration::default()
     }
 }

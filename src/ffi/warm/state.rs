@@ -43,7 +43,7 @@ const _: () = {
 pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
     // SAFETY: [inputs].
     match unsafe { warm.as_ref() } {
-        Some(warm) => WarmStart::unpack(warm.reals, warm.words[0]),
+        Some(warm) => WarmStart::unpack(warm.reals, warm.words),
         None => WarmStart::COLD,
     }
 }
@@ -53,8 +53,7 @@ pub(in crate::ffi) unsafe fn read(warm: *const ccd_warm_t) -> WarmStart {
 /// # Safety
 /// \[outputs\] of the module contract.
 pub(in crate::ffi) unsafe fn store(warm: *mut ccd_warm_t, state: &WarmStart) {
-    let (reals, kind) = state.pack();
-    let words = [kind, 0];
+    let (reals, words) = state.pack();
     // SAFETY: [outputs].
     unsafe { write(warm, ccd_warm_t { reals, words }) };
 }

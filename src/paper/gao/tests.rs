@@ -121,6 +121,7 @@ mod search {
                     tolerance,
                     until: Until::Normal,
                     plane_normal: None,
+                    scale: Scale::default(),
                     budget: 2000,
                     best: ray,
                 };
@@ -266,6 +267,7 @@ mod search {
 
 mod portal {
     use super::super::*;
+    use crate::minkowski::support_query::Direction;
     use crate::shapes::{Random, Rotation, Shape, corners, difference, ellipsoid, hull, placed};
 
     const ULPS: f64 = 100.0 * EPSILON;
@@ -288,6 +290,7 @@ mod portal {
             tolerance,
             until,
             plane_normal: None,
+            scale: Scale::default(),
             budget,
             best,
         }
@@ -401,7 +404,7 @@ mod portal {
             // From the center through the origin, as from the centers of two objects.
             let first = support_plane(&md, -way).unwrap();
             match search(&md, first, 1e-6, Until::Normal, 1000).follow(&first) {
-                Err(Stop::Separated(n)) => {
+                Err(Stop::Separated(Direction { n, .. })) => {
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
                 _ => panic!("the origin is outside"),
@@ -430,6 +433,7 @@ mod portal {
 /// The case n = 2.
 mod planar {
     use super::super::*;
+    use crate::minkowski::support_query::Direction;
     use crate::shapes::{Random, Rotation, difference, hull};
 
     const TAU: f64 = core::f64::consts::TAU as f64;
@@ -574,7 +578,7 @@ mod planar {
             let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();
             match penetration(&md, &m, start, &SETTINGS) {
-                Err(Stop::Separated(n)) => {
+                Err(Stop::Separated(Direction { n, .. })) => {
                     assert!(n.dot(&m).abs() < 100.0 * EPSILON);
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);
                 }
