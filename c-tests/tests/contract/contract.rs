@@ -192,6 +192,30 @@ fn soname_is_that_of_libccd() {
     }
 }
 
+/// Checks the page's command that tells a library's precision.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn precision_of_a_library_is_told() {
+    let page = include_str!("../../../include/README.md");
+    let command = page.lines().find(|line| line.starts_with("objdump -d")).expect("a command");
+    for (library, precision) in [(ours("libccd.so.2"), Precision::CURRENT), (installed(), Precision::Double)] {
+        let command = command.replace("libccd.so.2", "\"$1\"");
+        let told = harness::must_succeed(Command::new("sh").args(["-c", &command, "sh"]).arg(library), "sh").stdout;
+        assert_eq!(told.trim(), precision.name());
+    }
+}
+
+/// Checks that a program that was compiled for double does not fail silently on the float build.
+#[cfg(feature = "single")]
+#[test]
+fn program_of_doubles_ends_on_the_float_build() {
+    let program = program("wrong_precision").flag("-UCCD_SINGLE").flag("-DCCD_DOUBLE").without_tools().build();
+    for call in ["0", "1", "2", "3", "4"] {
+        let (status, written) = program.run_to_end([call]);
+        assert!(!status.success() && written.stderr.contains("compiled for double"), "{call}: {status} {written:?}");
+    }
+}
+
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn data_is_linked_by_copy_relocations() {
