@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Names the shared library as libccd's own, and links it by GNU ld on ELF systems that have it;
-//! nothing else is built here. The tests, and the lab, whose package (c-tests/lab) has this
-//! script too, learn what they are compiled for, to compile C for the same.
+//! Names the shared library as libccd's own, binds its functions to each other, and links it by
+//! GNU ld on ELF systems that have it; nothing else is built here. The tests, and the lab, whose
+//! package (c-tests/lab) has this script too, learn what they are compiled for, to compile C for
+//! the same.
 
 use std::env::var;
 use std::process::Command;
@@ -37,23 +38,30 @@ fn link_arguments() -> Vec<&'static str> {
         return Vec::new();
     }
     let mut arguments = vec!["-Wl,-soname,libccd.so.2"];
-    if has_gnu_ld() {
+    if prints_version(OWN_FUNCTIONS).is_some() {
+        arguments.push(OWN_FUNCTIONS);
+    }
+    if prints_version(GNU_LD).is_some_and(|version| version.starts_with(b"GNU ld")) {
         arguments.push(GNU_LD);
     }
     arguments
 }
+
+/// Binds the library's functions to each other at link time, so that none runs a function of another
+/// libccd in the process.
+const OWN_FUNCTIONS: &str = "-Wl,-Bsymbolic-functions";
 
 /// GNU ld leaves out what nothing calls of Rust's standard library. LLVM's, which newer Rusts
 /// call by themselves, keeps all that its unwinder names, the unwinder as well, though no
 /// frame of the library needs it: 300,000 bytes.
 const GNU_LD: &str = "-fuse-ld=bfd";
 
-/// Whether the C compiler that cargo links with has it.
-fn has_gnu_ld() -> bool {
+/// Returns what the linker prints as its version, by the C compiler that cargo links with; None where
+/// either does not know the argument.
+fn prints_version(argument: &str) -> Option<Vec<u8>> {
     println!("cargo::rerun-if-env-changed=RUSTC_LINKER");
     let linker = var("RUSTC_LINKER").unwrap_or_else(|_| "cc".to_owned());
-    let said = Command::new(linker)
-        .args([GNU_LD, "-Wl,--version"])
-        .output();
-    said.is_ok_and(|said| said.status.success() && said.stdout.starts_with(b"GNU ld"))
+    let mut command = Command::new(linker);
+    let said = command.args([argument, "-Wl,--version"]).output().ok()?;
+    said.status.success().then_some(said.stdout)
 }

@@ -85,7 +85,8 @@ fi
 target=${CARGO_TARGET_DIR:-$here/../target}
 if [ -z "$library" ]; then
     sh "$here/setup.sh" compare >&2
-    cargo build -q --release --lib --manifest-path "$here/../Cargo.toml" >&2
+    # Not quietly: cargo says when it waits for another build.
+    cargo build --release --lib --manifest-path "$here/../Cargo.toml" >&2
     library=$target/release/libccd.so
 fi
 [ -r "$library" ] || fail "$library: no file"

@@ -2,15 +2,16 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 
 /* FCL's signed distance of every configuration of tests/stability/configurations.h, of pairs of equal
- * boxes that touch face on face, and of random pairs, judged by exact truth. Prints the wrong
+ * boxes that touch face on face, of random pairs, and of spheres beside capsules, judged by exact truth. Prints the wrong
  * results, the file that GJKSignedDistance is taken from, and a line for each set:
  *
- *   SET queries N threw N endless N wrong N outside N microseconds N
+ *   SET queries N threw N endless N wrong N outside N unequal N microseconds N
  *
  * `threw`: an exception, a crash, or one of the assertions that Debian's FCL is built with;
  * `endless`: no result in a second of processor, left out of the mean time; `wrong`: off by
  * more than TOLERANCE and 0.1 % of the truth, or the sign; `outside`: a witness point that lies
- * off its object by more than that.
+ * off its object by more than that; `unequal`: witness points that are not |distance| apart, within rounding. In the set
+ * `round`, spheres beside capsules, a witness point is outside if it is TOLERANCE off the only one.
  *
  * usage: fcl_distance PAIRS   (kissing pairs; a third as many random ones in three poses) */
 
@@ -28,15 +29,15 @@
 static const double TOLERANCE = 1e-6; /* FCL's */
 
 typedef struct {
-    long queries, threw, endless, wrong, outside;
+    long queries, threw, endless, wrong, outside, unequal;
     double seconds;
 } set_t;
-static const char *const SET_NAMES[] = {"configurations", "kissing", "random"};
+static const char *const SET_NAMES[] = {"configurations", "kissing", "random", "round"};
 
 /* The queries run in a child process. A failed assertion, a crash and a query of more than a second end it,
  * and the next child continues behind that query: what such a query leaves in memory spoils no other. */
 typedef struct {
-    set_t sets[3];
+    set_t sets[4];
     int current; /* set */
     long done;   /* queries, the current one included */
     char name[64];
@@ -57,7 +58,8 @@ static void count(long &faults, const char *what)
     printf("%s: %s\n", what, progress->name);
 }
 
-static void query(const char *name, const shape_t &a, const shape_t &b, double lower, double upper)
+/* Judges one distance. points: the only witness points, or NULL. */
+static void query(const char *name, const shape_t &a, const shape_t &b, double lower, double upper, const vec *points = NULL)
 {
     static long index; /* of this query */
     if (index++ < progress->done)
@@ -90,6 +92,11 @@ static void query(const char *name, const shape_t &a, const shape_t &b, double l
     if (is_outside(a, result.nearest_points[0], allowed, allowed / 4)
         || is_outside(b, result.nearest_points[1], allowed, allowed / 4))
         count(set.outside, "outside");
+    const vec *const found = result.nearest_points;
+    if (points && !((found[0] - points[0]).norm() <= TOLERANCE && (found[1] - points[1]).norm() <= TOLERANCE))
+        count(set.outside, "aside");
+    if (!(fabs((found[0] - found[1]).norm() - fabs(value)) <= 1e-14 * (size + found[0].norm())))
+        count(set.unequal, "unequal");
 }
 
 static void query_configuration(const configuration_t *c)
@@ -134,6 +141,20 @@ static void query_random(long pairs)
     }
 }
 
+/* Spheres beside upright capsules, apart. */
+static void query_round(long pairs)
+{
+    for (long i = 0; i < pairs; i++) {
+        const double r1 = uniform(.1, 1), r2 = uniform(.1, 1), half = uniform(.1, 1);
+        const double distance = uniform(0, 1) * fmin(r1, r2), height = uniform(-.9, .9) * half;
+        shape_t a = shape_sphere(r1), b = shape_capsule(r2, half);
+        const vec u = vec(uniform(-1, 1), uniform(-1, 1), 0).normalized(), center = -(r1 + r2 + distance) * u + vec(0, 0, height);
+        shape_move(&a, center[0], center[1], center[2]);
+        const vec points[2] = {center + r1 * u, vec(0, 0, height) - r2 * u};
+        query("a sphere beside a capsule", a, b, -distance, -distance, points);
+    }
+}
+
 static void query_all(long pairs)
 {
     uniform_seed(45);
@@ -143,6 +164,8 @@ static void query_all(long pairs)
     query_kissing(pairs);
     progress->current = 2;
     query_random(pairs / 3);
+    progress->current = 3;
+    query_round(pairs / 3);
 }
 
 /* Runs the remaining queries in a child; returns whether all are done. */
@@ -186,10 +209,10 @@ int main(int argc, char **argv)
     printf("function %s\n", function && dladdr(function, &from) ? strrchr(from.dli_fname, '/') + 1 : "none");
     while (!run_child(atol(argv[1])))
         ;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         const set_t &set = progress->sets[i];
-        printf("%s queries %ld threw %ld endless %ld wrong %ld outside %ld microseconds %.3f\n", SET_NAMES[i], set.queries,
-               set.threw, set.endless, set.wrong, set.outside, 1e6 * set.seconds / (double)(set.queries - set.endless));
+        printf("%s queries %ld threw %ld endless %ld wrong %ld outside %ld unequal %ld microseconds %.3f\n", SET_NAMES[i], set.queries,
+               set.threw, set.endless, set.wrong, set.outside, set.unequal, 1e6 * set.seconds / (double)(set.queries - set.endless));
     }
     return 0;
 }

@@ -36,17 +36,19 @@ fn preloading_replaces_libccd() {
     assert!(output.value("poses.queried") > 1000.0, "{}", output.text);
 }
 
-/// With `libwarmccd-fcl.so` FCL answers every configuration, touching boxes and random pairs right, and throws nothing.
-/// On libccd and in more pairs: `lab/engines/simulations.rs`.
+/// With `libwarmccd-fcl.so` FCL answers every configuration, touching boxes, random pairs and spheres beside capsules right,
+/// with witness points |distance| apart, and throws nothing. On libccd and in more pairs: `lab/engines/simulations.rs`.
 #[test]
 fn fcl_signed_distance() {
     let [_, _, preloaded] = fcl_distance();
-    let output = preloaded.run("100");
+    let output = preloaded.run("300");
     assert!(output.text.contains("\nfunction libwarmccd-fcl.so\n"), "{}", output.text);
-    for set in ["configurations", "kissing", "random"] {
+    for set in ["configurations", "kissing", "random", "round"] {
         assert!(output.value(&format!("{set}.queries")) >= 90.0, "{}", output.text);
-        for key in ["threw", "endless", "wrong", "outside"] {
-            assert_eq!(output.value(&format!("{set}.{key}")), 0.0, "{}", output.text);
+        for key in ["threw", "endless", "wrong", "outside", "unequal"] {
+            // Where the bounds have not met, the depth is more than the distance of the witness points.
+            let allowed = if (set, key) == ("configurations", "unequal") { 10.0 } else { 0.0 };
+            assert!(output.value(&format!("{set}.{key}")) <= allowed, "{set} {key}: {}", output.text);
         }
     }
 }

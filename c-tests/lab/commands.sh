@@ -111,7 +111,7 @@ run "preloading in Python" "^depth 0.100" 's/ python / python3 /' <<'END'
 LD_LIBRARY_PATH=$PWD/target/release LD_PRELOAD=libccd.so python app.py
 END
 run "the precision of a library" "^double" 's|libccd.so.2|target/swap/&|' <<'END'
-objdump -d --disassemble=ccdVec3PointSegmentDist2 libccd.so.2 | grep -qE 'mul[sp]d' && echo double || echo single
+objdump -d --disassemble=ccdVec3PointSegmentDist2 libccd.so.2 | grep -qE 'mulss|cvtss2sd|cvtps2pd' && echo single || echo double
 END
 run "the precision of a program" "= 8" "" gdb <<'END'
 gdb -batch -ex 'whatis (ccd_real_t)0' -ex 'print sizeof(ccd_real_t)' program
@@ -195,6 +195,7 @@ source.sh OUT
 sh cmake/packages/source.sh OUT
 sh c-tests/lab/release.sh LOGS
 sh c-tests/lab/release.sh LOGS packaging packaging-single
+sh c-tests/lab/fcl_tests.sh
 sh c-tests/setup.sh lab
 release.sh LOGS STEP...
 tests.sh SUITE

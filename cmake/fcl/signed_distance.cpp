@@ -9,7 +9,9 @@
  *
  * Meaning of the results, as in FCL's gjk_libccd-inl.h:
  *   GJKSignedDistance  apart or touching: the distance, witness points, true; overlapping: minus
- *                      the penetration depth, witness points, false
+ *                      the penetration depth, witness points, false. The points lie in the
+ *                      objects, |distance| apart: of an overlap, those of the polytope inside,
+ *                      whose depth is less than the least one by at most the tolerance
  *   GJKDistance        apart or touching: the same; overlapping: -1, points at the origin, false
  * FCL throws FailedAtThisConfiguration where its EPA fails, which its solver turns into a
  * std::logic_error. Here support points that are not finite alone raise std::invalid_argument,
@@ -20,6 +22,7 @@
 #include <Eigen/Core>
 #include <fcl/config.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 #include <stdexcept>
@@ -40,6 +43,18 @@ void store(const ccd_vec3_t &point, Vector3<S> *out)
         *out << static_cast<S>(point.v[0]), static_cast<S>(point.v[1]), static_cast<S>(point.v[2]);
 }
 
+/* Moves the witness points of objects that are apart to the ends of the shortest line, at the cost of another search: a
+ * distance that is e too long leaves a point of a ball of radius r aside by sqrt(2 r e), which is more than e. */
+void refine(const void *obj1, const void *obj2, ccd_t ccd, ccd_warm_t *warm, ccd_distance_t *out)
+{
+    ccd_distance_t refined;
+    ccd.dist_tolerance = 0;
+    ccd.max_iterations = std::min(ccd.max_iterations, 30UL);
+    const int code = ccdSignedDistance(obj1, obj2, &ccd, 0, 0, INFINITY, warm, CCD_WANT_POINTS, &refined);
+    if ((code == CCD_MISS || code == CCD_LIMIT) && refined.distance >= 0 && refined.distance_upper <= out->distance_upper)
+        *out = refined;
+}
+
 /* Writes the signed distance and the witness points; returns whether the objects are apart. */
 template <typename S>
 bool distance(void *obj1, ccd_support_fn support1, void *obj2, ccd_support_fn support2, unsigned int max_iterations,
@@ -47,26 +62,32 @@ bool distance(void *obj1, ccd_support_fn support1, void *obj2, ccd_support_fn su
 {
     ccd_t ccd;
     ccd_distance_t out;
+    ccd_warm_t warm = ccd_warm_t();
     CCD_INIT(&ccd);
     ccd.support1 = support1;
     ccd.support2 = support2;
     ccd.max_iterations = max_iterations;
     ccd.dist_tolerance = static_cast<ccd_real_t>(tolerance);
-    const int code = ccdSignedDistance(obj1, obj2, &ccd, 0, 0, INFINITY, nullptr, CCD_WANT_POINTS, &out);
+    const int code = ccdSignedDistance(obj1, obj2, &ccd, 0, 0, INFINITY, &warm, CCD_WANT_POINTS, &out);
     if (code == CCD_NO_MEMORY)
         throw std::bad_alloc();
     if (code == CCD_BAD_INPUT)
         throw std::invalid_argument("warmccd: a shape, a pose or a tolerance is not finite");
 
-    /* The upper bound is the distance of the witness points, the lower one that of their planes.
-     * At CCD_LIMIT the sign alone tells whether the objects overlap. */
+    /* At CCD_LIMIT the sign alone tells whether the objects overlap. */
     const bool is_apart = code == CCD_MISS || (code == CCD_LIMIT && out.distance >= 0);
-    if (!is_apart && !with_depth) {
-        out.distance = -1;
+    if (is_apart && (p1 || p2))
+        refine(obj1, obj2, ccd, &warm, &out);
+    ccd_real_t signed_distance = CCD_SQRT(ccdVec3Dist2(&out.point1, &out.point2));
+    if (!is_apart && with_depth) {
+        /* At CCD_LIMIT the points can be closer than the depth by more than the tolerance. */
+        signed_distance = code == CCD_LIMIT ? out.distance : -signed_distance;
+    } else if (!is_apart) {
+        signed_distance = -1;
         out.point1 = out.point2 = ccd_vec3_t();
     }
     if (dist)
-        *dist = static_cast<S>(is_apart ? std::fmax(out.distance_upper, CCD_ZERO) : out.distance);
+        *dist = static_cast<S>(signed_distance);
     store(out.point1, p1);
     store(out.point2, p2);
     return is_apart;

@@ -23,10 +23,65 @@ impl SupportMap for Object {
         // Copying the whole struct compiles to packed stores. Packed loads of a callee can be served
         // by store-to-load forwarding from these, but not from three scalar stores.
         let dir = ccd_vec3_t::from(*dir);
-        let mut point = ccd_vec3_t::default();
+        let mut point = Output::default();
         // SAFETY: [callbacks]; nothing with a destructor is alive here.
-        unsafe { support(obj, &dir, &mut point) };
-        load(&point)
+        unsafe { support(obj, &dir, point.pointer()) };
+        load(point.written())
+    }
+}
+
+/// The vector that a callback writes. The float build has room for a vector of doubles behind it: the callbacks of a program
+/// that was compiled for double would else overwrite the stack, and its answers be wrong without a word.
+#[repr(C)]
+#[cfg_attr(feature = "single", repr(align(8)))]
+#[derive(Default)]
+struct Output {
+    vector: ccd_vec3_t,
+    #[cfg(feature = "single")]
+    behind: [u32; 3],
+}
+
+impl Output {
+    /// Returns what the callback gets.
+    #[inline(always)]
+    fn pointer(&mut self) -> *mut ccd_vec3_t {
+        #[cfg(feature = "single")]
+        {
+            self.behind = [UNTOUCHED; 3];
+        }
+        (&raw mut *self).cast()
+    }
+
+    /// Returns the vector after the callback. Ends the process if it wrote doubles.
+    #[inline(always)]
+    fn written(&self) -> &ccd_vec3_t {
+        #[cfg(feature = "single")]
+        if self.behind != [UNTOUCHED; 3] {
+            end_program_of_doubles();
+        }
+        &self.vector
+    }
+}
+
+/// The bits behind a vector of floats before the callback: those of a NaN, which no finite double ends with.
+#[cfg(feature = "single")]
+const UNTOUCHED: u32 = 0x7ff5_a5a5;
+
+/// Writes a line on stderr and ends the process.
+#[cfg(feature = "single")]
+#[cold]
+fn end_program_of_doubles() -> ! {
+    unsafe extern "C" {
+        fn perror(text: *const core::ffi::c_char);
+        fn abort() -> !;
+    }
+    // SAFETY: [inputs]: a zero-terminated text.
+    unsafe {
+        perror(
+            c"warmccd: this libccd is the float build, but the program is compiled for double"
+                .as_ptr(),
+        );
+        abort()
     }
 }
 
@@ -101,10 +156,10 @@ impl QueryArgs {
     unsafe fn first_dir(&self) -> Option<Vec3> {
         // SAFETY: [inputs]; only the field is read.
         let first_dir = unsafe { (*self.ccd).first_dir? };
-        let mut dir = ccd_vec3_t::default();
+        let mut dir = Output::default();
         // SAFETY: [callbacks].
-        unsafe { first_dir(self.obj1, self.obj2, &mut dir) };
-        Some(dir.into())
+        unsafe { first_dir(self.obj1, self.obj2, dir.pointer()) };
+        Some((*dir.written()).into())
     }
 
     /// Returns the caller's settings, with the tolerance that the solver reads. If that is negative or NaN, libccd's calls
@@ -178,8 +233,8 @@ impl QueryArgs {
 /// # Safety
 /// \[callbacks\] of the module contract.
 pub unsafe fn center_of(center: ccd_center_fn, obj: *const c_void) -> Vec3 {
-    let mut c = ccd_vec3_t::default();
+    let mut c = Output::default();
     // SAFETY: [callbacks].
-    unsafe { center(obj, &mut c) };
-    load(&c)
+    unsafe { center(obj, c.pointer()) };
+    load(c.written())
 }

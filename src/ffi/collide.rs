@@ -70,6 +70,25 @@ pub unsafe extern "C-unwind" fn ccdMPRPenetration(
     unsafe { libccd_penetration(args, Interface::Mpr, null_mut(), depth, dir, pos) }
 }
 
+/// Runs [`ccdGJKPenetration`]. No exported function calls another: the linker would bind that call to a function of the
+/// same name in another library of the process.
+///
+/// # Safety
+/// \[inputs\] and \[outputs\] of the module contract.
+#[inline(never)]
+unsafe fn gjk_penetration(
+    obj1: *const c_void,
+    obj2: *const c_void,
+    ccd: *const ccd_t,
+    depth: *mut Real,
+    dir: *mut ccd_vec3_t,
+    pos: *mut ccd_vec3_t,
+) -> c_int {
+    let args = QueryArgs { obj1, obj2, ccd };
+    // SAFETY: the caller's guarantees are those of the callee.
+    unsafe { libccd_penetration(args, Interface::Gjk, null_mut(), depth, dir, pos) }
+}
+
 /// Computes the globally least penetration depth, its direction and the contact position. Starts
 /// from first_dir and calls no center.
 ///
@@ -91,9 +110,8 @@ pub unsafe extern "C-unwind" fn ccdGJKPenetration(
     dir: *mut ccd_vec3_t,
     pos: *mut ccd_vec3_t,
 ) -> c_int {
-    let args = QueryArgs { obj1, obj2, ccd };
     // SAFETY: the caller's guarantees are those of the callee.
-    unsafe { libccd_penetration(args, Interface::Gjk, null_mut(), depth, dir, pos) }
+    unsafe { gjk_penetration(obj1, obj2, ccd, depth, dir, pos) }
 }
 
 /// Computes the shortest translation of obj2 that separates the objects: `sep` = depth * dir, metres;
@@ -108,7 +126,7 @@ pub unsafe extern "C-unwind" fn ccdGJKSeparate(
     let (mut depth, mut dir) = (0.0, ccd_vec3_t::default());
     // SAFETY: the caller's guarantees are those of the callee; [outputs].
     unsafe {
-        let code = ccdGJKPenetration(obj1, obj2, ccd, &mut depth, &mut dir, null_mut());
+        let code = gjk_penetration(obj1, obj2, ccd, &mut depth, &mut dir, null_mut());
         if let (0, Some(sep)) = (code, sep.as_mut()) {
             *sep = (Vec3::from(dir) * f64::from(depth)).into();
         }

@@ -147,7 +147,7 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const
     // [inputs]: a zero-terminated name.
     let file = fopen(filename, c"a".as_ptr());
     if !file.is_null() {
-        ccdPtDumpSVT2(pt, file);
+        dump(pt, file);
         fclose(file);
     }
 }
@@ -156,6 +156,11 @@ pub unsafe extern "C-unwind" fn ccdPtDumpSVT(pt: *mut ccd_pt_t, filename: *const
 /// of points. Stores the index of each vertex in its `id`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdPtDumpSVT2(pt: *mut ccd_pt_t, file: *mut c_void) {
+    dump(pt, file);
+}
+
+/// Writes the text of [`ccdPtDumpSVT2`].
+unsafe fn dump(pt: *mut ccd_pt_t, file: *mut c_void) {
     // [inputs]: an open stream; the formats match what is passed.
     fputs(c"-----\nPoints:\n".as_ptr(), file);
     for (id, vertex) in (0..).zip(elements::<ccd_pt_vertex_t>(&raw mut (*pt).vertices)) {

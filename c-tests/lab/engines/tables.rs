@@ -18,17 +18,18 @@ pub fn collide_table(title: &str, outputs: &[Output]) -> String {
 }
 
 /// The sets of pairs of `fcl_distance`.
-pub const DISTANCE_SETS: [&str; 3] = ["configurations", "kissing", "random"];
+pub const DISTANCE_SETS: [&str; 4] = ["configurations", "kissing", "random", "round"];
 
 pub fn distance_table(outputs: &[Output]) -> String {
     let line = |(set, o): (&str, &Output)| {
         let count = |key: &str| o.value(&format!("{set}.{key}"));
-        let counts = [count("queries"), count("threw"), count("endless"), count("wrong") + count("outside")];
+        let wrong = count("wrong") + count("outside");
+        let counts = [count("queries"), count("threw"), count("endless"), wrong, count("unequal")];
         let time = format!("{:.1}", count("microseconds"));
         [vec![set.to_owned(), o.method.to_owned()], counts.map(|n| n.to_string()).into(), vec![time]].concat()
     };
     let rows = DISTANCE_SETS.iter().flat_map(|set| outputs.iter().map(move |output| (*set, output)));
-    markdown("pairs||pairs|threw|endless|wrong|µs a distance", rows.map(line))
+    markdown("pairs||pairs|threw|endless|wrong|unequal|µs a distance", rows.map(line))
 }
 
 /// The counters of wrong answers.

@@ -134,12 +134,85 @@ fn no_panic_is_linked() {
     );
 }
 
+/// Checks that no function of the library calls an exported one, and that the dynamic linker has none to bind: another libccd
+/// in the process, or an object that is preloaded, would get the call.
+#[test]
+fn no_call_inside_the_library_is_bound_by_the_dynamic_linker() {
+    for file in ["libccd.a", "libccd.so"] {
+        let relocations = output("readelf", &["-rW"], &ours(file));
+        assert!(relocations.contains("malloc"), "{file}: no relocations");
+        // Offset, information, type, value, symbol.
+        let mut symbols = relocations.lines().filter_map(|line| line.split_whitespace().nth(4));
+        let ccd = symbols.find(|symbol| symbol.trim_start_matches('_').starts_with("ccd"));
+        assert_eq!(ccd, None, "{file}");
+    }
+}
+
+/// Checks that all 18 functions return the same with Debian's libccd in the process, loaded before or after, and with an
+/// object preloaded that has functions of the same names.
+#[test]
+#[cfg_attr(feature = "single", ignore = "Debian's libccd is double; the linking is the same in both precisions")]
+fn functions_are_this_librarys_own_beside_another_libccd() {
+    // Linked to a library though it looks all functions up.
+    let flags = ["-D_POSIX_C_SOURCE=200809L", "-Wl,--no-as-needed", "-ldl"];
+    let program = flags.into_iter().fold(program("two_libraries"), Program::flag).without_tools();
+    let on_ours = program.clone().build();
+    let alone = on_ours.run([ours("libccd.so.2")]).stdout;
+    let words = include_str!("functions.h").split(['(', ')']);
+    let named = words.filter(|word| word.trim_start_matches('_').starts_with("ccd"));
+    let exported = dynamic_symbols(&installed());
+    let exported = exported.iter().filter_map(|symbol| symbol.split_once(" FUNC")).map(|(name, _)| name);
+    assert_eq!(named.collect::<BTreeSet<_>>(), exported.collect::<BTreeSet<_>>(), "functions.h");
+
+    let before = program.link(Link::System).build().run([ours("libccd.so")]);
+    assert_eq!(before.stdout, alone, "libccd loaded before");
+    let after = on_ours.run([ours("libccd.so.2"), installed()]);
+    assert_eq!(after.stdout, alone, "libccd loaded after");
+    if harness::emulated() {
+        println!("skipped: the emulator would be preloaded too");
+        return;
+    }
+    let dir = tempfile::tempdir().expect("a directory");
+    let recorder = dir.path().join("recorder.so");
+    let source = harness::root().join("c-tests/tests/contract/recorder.c");
+    let mut compile = harness::compiler(false);
+    compile.args(["-shared", "-fPIC", "-I"]).arg(harness::root().join("c-tests")).arg(source).arg("-o").arg(&recorder);
+    harness::must_succeed(&mut compile, "the compiler");
+    let mut preloaded = on_ours.command();
+    preloaded.arg(ours("libccd.so.2")).env("LD_PRELOAD", &recorder);
+    assert_eq!(harness::must_succeed(&mut preloaded, "the program").stdout, alone, "a recorder preloaded");
+}
+
 #[test]
 fn soname_is_that_of_libccd() {
     for library in [ours("libccd.so"), installed()] {
         let dynamic = output("readelf", &["-d"], &library);
         assert!(dynamic.contains("Library soname: [libccd.so.2]"), "{dynamic}");
         assert!(!dynamic.contains("VERDEF"), "symbols have versions");
+    }
+}
+
+/// Checks the page's command that tells a library's precision.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn precision_of_a_library_is_told() {
+    let page = include_str!("../../../include/README.md");
+    let command = page.lines().find(|line| line.starts_with("objdump -d")).expect("a command");
+    for (library, precision) in [(ours("libccd.so.2"), Precision::CURRENT), (installed(), Precision::Double)] {
+        let command = command.replace("libccd.so.2", "\"$1\"");
+        let told = harness::must_succeed(Command::new("sh").args(["-c", &command, "sh"]).arg(library), "sh").stdout;
+        assert_eq!(told.trim(), precision.name());
+    }
+}
+
+/// Checks that a program that was compiled for double does not fail silently on the float build.
+#[cfg(feature = "single")]
+#[test]
+fn program_of_doubles_ends_on_the_float_build() {
+    let program = program("wrong_precision").flag("-UCCD_SINGLE").flag("-DCCD_DOUBLE").without_tools().build();
+    for call in ["0", "1", "2", "3", "4"] {
+        let (status, written) = program.run_to_end([call]);
+        assert!(!status.success() && written.stderr.contains("compiled for double"), "{call}: {status} {written:?}");
     }
 }
 

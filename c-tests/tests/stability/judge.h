@@ -333,12 +333,14 @@ static inline int judge(const entry_t *e, const answer_t *answer, const shape_t 
     /* libccd's MPR misses overlaps thinner than its tolerance */
     if (e->is_libccd && q->truth.lower <= tolerance(TOL_DEEP) * q->size + q->noise)
         faults &= ~FAULT_MISSED;
-    /* only structs can report a limit; ccdPenetration gives up after 160 support points, the published method where it
-     * converges slowly */
+    /* only structs can report a limit; ccdPenetration gives up after 160 support points, the local search then with a depth that
+     * is the least within ccdPenetration's tolerance, the published method where it converges slowly */
     if (x->code == CCD_LIMIT && !x->has_bounds)
         faults |= FAULT_CODE;
     if (x->code == CCD_LIMIT && q->limit == LIMIT_NEVER && e->call != CALL_INCREMENTAL
-        && !(e->call == CALL_PENETRATION && x->calls >= 2 * MPR_POINTS))
+        && !(e->call == CALL_PENETRATION && x->calls >= 2 * MPR_POINTS)
+        && !(e->call == CALL_LOCAL && x->calls >= 2 * MPR_POINTS
+             && x->depth <= q->truth.depth + fmax(q->tol, tolerance(TOL_MPR) * q->truth.depth) + 2 * q->noise))
         faults |= FAULT_LIMIT;
     if (is_zero && q->truth.depth > q->tol + q->noise)
         faults |= FAULT_UNSOUND;

@@ -25,3 +25,15 @@ fn recorded_contacts_are_judged_and_a_wrong_answer_repeats() {
     let shown = harness::must_succeed(&mut replay, "replay.sh").stdout;
     assert!(shown.contains("== libccd: ") && shown.contains("== this library") && shown.contains(": right"), "{shown}");
 }
+
+/// Checks that directions of zero are counted on every query, though none is judged.
+#[test]
+fn directions_of_zero_are_counted_on_every_query() {
+    let program = Program::new("tools/compare/touch.c").link(Link::System).without_tools().build();
+    let count = |options: &[&str]| fields(&program.compared(options).run([""; 0]).stdout, "counted");
+    let [theirs, ours] = [count(&["--fields", "--every", "0"]), count(&["--fields", "--every", "0", "--swap"])];
+    assert_eq!((theirs["queries"], theirs["judged"], theirs["broken"]), (1000.0, 0.0, 1000.0));
+    assert_eq!((ours["queries"], ours["broken"]), (1000.0, 0.0));
+    let screen = program.compared(&["--every", "0"]).run([""; 0]).stderr;
+    assert!(screen.contains("1,000 of all 1,000 hits, judged or not"), "{screen}");
+}

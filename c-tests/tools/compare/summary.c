@@ -67,6 +67,9 @@ static void print_calls(compare_call_t *sum)
     if (all.raw_supports)
         printf("%-20s %12s   support points of another algorithm, not judged (FCL's own GJK and EPA)\n", "__ccdSupport",
                thousands(all.raw_supports));
+    if (sum->broken)
+        printf("%s of all %s hits, judged or not, had no unit direction (zero, NaN) or no finite depth: %s's. ODE ends there.\n",
+               thousands(sum->broken), thousands(sum->hits), all.base == COMPARE_THEIRS ? "libccd" : "this library");
     if (sum->queries > sum->returned)
         printf("%s did not return: an exception or a jump out of a callback\n", thousands(sum->queries - sum->returned));
 }
