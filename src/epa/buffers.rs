@@ -5,6 +5,7 @@
 //! to larger ones: from the small ones, on the stack, to the large ones, on the stack in a frame of their own, to those of
 //! an [`Arena`].
 
+use crate::epa::direction::MAX_REFINEMENTS;
 use crate::epa::polytope::{EpaPolytope, MAX_FACES};
 use crate::minkowski::support::Fault;
 use crate::minkowski::vertex_set::VertexSet;
@@ -23,17 +24,17 @@ pub const MAX_PROVEN_POINTS: u64 = 320;
 
 /// The number of vertices of the small buffers, 6 KB on the stack with their faces: enough for shallow contacts and most
 /// polytopes.
-pub const SMALL_VERTICES: usize = 24;
+pub const SMALL_VERTICES: usize = 24 + MAX_REFINEMENTS;
 /// The number of faces of the small buffers.
 pub const SMALL_FACES: usize = 64;
 /// The number of vertices of the large buffers, on the stack.
-pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + START_VERTICES;
+pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + START_VERTICES + MAX_REFINEMENTS;
 /// The number of faces of the large buffers: what 44 KB of stack leave (test `costs`).
 pub const LARGE_FACES: usize = 368;
 /// The number of vertices of the buffers of an [`Arena`].
-const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + START_VERTICES;
+const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + START_VERTICES + MAX_REFINEMENTS;
 /// The number of faces of these buffers: for as many known differences as vertices, two faces a corner.
-const ARENA_FACES: usize = 4 * ARENA_VERTICES;
+const ARENA_FACES: usize = (4 * ARENA_VERTICES).next_multiple_of(16);
 /// The number of entries that a start of the polytope adds to the vertex set: the corners of a tetrahedron. So much room
 /// is kept above the limit of support points too, which applies only while the origin is inside the polytope.
 pub const START_VERTICES: usize = 4;
