@@ -18,7 +18,15 @@ pub const MAX_DEFAULT_POINTS: u64 = 160;
 /// Derived: 400 − 80. Measured (`cargo run --release -p lab --bin campaigns -- wide`): up to 80 more, on nearly coincident
 /// bodies, are evaluated beyond this limit, for starts of the polytope that do not contain the origin yet and in the local
 /// search that follows ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). The tests fail at the numbers of `call_limit` in
-/// c-tests/tests/stability/entries.h, at most 500. Queries without a polytope have
+/// c-tests/tests/stability/entries.h, at most 500.
+///
+/// Minima that the limit leaves unproven, of round bodies that are nearly concentric: around the minimum of a ball of radius ρ
+/// whose center is e from the origin, a face at the angle α may have a circumradius of at most α √(ρ e), so that a polytope that
+/// proves it within a gap has at least 2.4 ρ / e · ln(π / √(2 gap / e)) corners: 270 at e = 0.1 ρ = 0.1 m and 1e-10 m. Measured:
+/// the expansion takes 1.4 to 2.1 times as many (167 at e = 0.2 m and 1e-8 m), so that balls up to e = 0.11 ρ are not proven to
+/// 1e-8 ρ, and up to 0.16 ρ not to 1e-10 ρ.
+///
+/// Queries without a polytope have
 /// [`ITERATION_CAP`](crate::math::ITERATION_CAP).
 pub const MAX_PROVEN_POINTS: u64 = 320;
 

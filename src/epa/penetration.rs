@@ -832,4 +832,18 @@ mod tests {
             assert!(hit.depth <= 1.01 * (side + ball_radius), "{hit:?}");
         }
     }
+
+    /// Closer centers need more corners than the limit allows, see [`MAX_PROVEN_POINTS`].
+    #[test]
+    fn balls_whose_centers_are_apart_are_proven() {
+        let mut r = Random::new(46);
+        for _ in 0..100 {
+            let at = r.direction() * r.within(0.17, 0.95);
+            let md = difference(ball(Vec3::zeros(), 0.5), ball(at, 0.5));
+            let mut heap = Heap::new();
+            let hit = run(&md, None, MAX_PROVEN_POINTS, Some(&mut heap)).unwrap();
+            assert_eq!(hit.status, Status::Converged, "{at}");
+            assert!((hit.depth - (1.0 - at.norm())).abs() <= TOLERANCE);
+        }
+    }
 }
