@@ -9,10 +9,12 @@
 //! | [`penetration`] | the driver; its head lists the steps of the global query |
 //! | [`expand`] | the loop that expands the polytope |
 //! | [`buffers`] | the buffers of both, in three sizes |
+//! | [`direction`] | the last refinement of the direction of a result |
 //! | [`witness`] | the witness points of the upper bound |
 //! | [`polytope`] | the polytope: insertion of points, closest face, error bound; no support calls |
 
 pub mod buffers;
+pub mod direction;
 pub mod expand;
 pub mod penetration;
 pub mod polytope;

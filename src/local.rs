@@ -37,14 +37,13 @@
 //! outside its object.
 
 mod face;
-mod newton;
 
 use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
-use crate::local::newton::newton_step;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
+use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
@@ -349,7 +348,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
         if self.newton_len != self.set.len() {
             self.newton_len = self.set.len();
-            self.newton = newton_step(self.set, &self.query.upper);
+            let step = newton_step(self.set, &self.query.upper);
+            self.newton = step.map(|step| Prediction {
+                model: Model::Smooth(step.flattest),
+                dir: step.dir,
+                value: step.value,
+            });
         }
         self.newton.filter(|p| self.is_new(&p.dir))
     }

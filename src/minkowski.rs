@@ -18,12 +18,14 @@
 //! | [`support_query`] | evaluation, upper bound, separating-axis test |
 //! | [`tolerance`] | effective tolerance, contact eps, rounding |
 //! | [`sphere_fit`] | sphere fits, which choose the directions to evaluate |
+//! | [`newton`] | Newton's step to a minimum of a smooth D |
 //! | [`separating_axis`] | the axis test for pairs that stay separated |
 //! | [`warm_start`] | the state of a pair from one query to the next |
 //! | [`tuning`] | the tuned constants of the search |
 //! | [`validate`] | tests of a support function and a center |
 
 pub mod general_position;
+pub mod newton;
 pub mod separating_axis;
 pub mod sphere_fit;
 pub mod support;

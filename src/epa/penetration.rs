@@ -35,6 +35,7 @@
 use crate::epa::buffers::{
     Arena, EpaBuffers, LARGE_FACES, LARGE_VERTICES, SMALL_FACES, SMALL_VERTICES, START_VERTICES,
 };
+use crate::epa::direction::refine_direction;
 use crate::epa::expand::{EpaLimits, expand};
 use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, witness_points};
@@ -90,8 +91,6 @@ struct EpaSolver<'q, 'm, A, B> {
     fit: SphereFit,
     /// The number of support points that expanded polytopes.
     iterations: u64,
-    /// True if the query starts from the last direction.
-    is_warm: bool,
     /// True if a support function contradicts the plane of the result.
     is_inconsistent: bool,
     /// `None` before the first result.
@@ -131,7 +130,6 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         interior: request.center.copied().unwrap_or_default(),
         fit: SphereFit::warm(radius),
         iterations: 0,
-        is_warm,
         is_inconsistent: false,
         proof: None,
     };
@@ -304,36 +302,12 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             return Ok(false);
         };
         let lower = distance - error;
-        if self.is_warm && self.query.upper.depth - lower > tolerance {
-            let normal = (b - a).cross(&(c - a));
-            self.refine_direction(set, portal, &normal)?;
+        let mut face = *portal;
+        if self.query.upper.depth - lower > tolerance {
+            refine_direction(self.query, set, &mut face, lower, tolerance)?;
         }
-        self.store_proof(set, || *portal, lower, allowed);
+        self.store_proof(set, &face, lower, allowed);
         Ok(true)
-    }
-
-    /// Evaluates one more direction, after a warm start has ended within the gap but not within the tolerance, so that
-    /// the direction tracks the motion of the pair: the prediction of the sphere fits if they are confirmed, else the
-    /// normal of the closest face.
-    fn refine_direction<const N: usize>(
-        &mut self,
-        set: &mut VertexSet<N>,
-        corners: &[Vertex; 3],
-        normal: &Vec3,
-    ) -> Result<(), Stop> {
-        trace::stage("warm refinement");
-        let upper = &self.query.upper;
-        let predicted = match self.fit.is_confirmed {
-            true => self.fit.predict(set, corners, &upper.dir),
-            false => normalise_unscaled(normal).map(|n| (n, 0.0)),
-        };
-        match predicted {
-            Some((n, value)) if value < upper.depth && !set.is_full() => {
-                self.query.evaluate(set, &n)?;
-                Ok(())
-            }
-            _ => Ok(()),
-        }
     }
 
     /// Expands polytopes from up to three starts, until one contains the origin and is not ended by rounding: the
@@ -512,42 +486,50 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             0.0
         };
         let interior = self.interior.v;
-        if self.is_warm && end == Status::Converged && self.query.upper.depth - lower > tolerance {
-            let face = polytope.face(set, &interior, closest.face);
-            self.refine_direction(set, &face, &polytope.normal(closest.face))?;
+        let exit_face = |query: &SupportQuery<'_, A, B>, set: &VertexSet<N>, gap: f64| {
+            exit_face(&query.upper, &interior, set, polytope, closest.face, gap)
+        };
+        let mut refined = None;
+        if end == Status::Converged && self.query.upper.depth - lower > tolerance {
+            let mut face = exit_face(self.query, set, self.allowed_gap());
+            refine_direction(self.query, set, &mut face, lower, tolerance)?;
+            refined = Some(face);
         }
-        let upper = self.query.upper;
+        let upper = self.query.upper.depth;
         let gap = self.allowed_gap();
-        let is_closer = |proof: Proof| upper.depth - lower < proof.upper - proof.lower;
+        let is_closer = |proof: Proof| upper - lower < proof.upper - proof.lower;
         if self.proof.is_none_or(is_closer) {
-            let face = || exit_face(&upper, &interior, set, polytope, closest.face, gap);
-            self.store_proof(set, face, lower, gap);
+            let face = match refined {
+                Some(face) => face,
+                None if self.request.wants_points => exit_face(self.query, set, gap),
+                None => [Vertex::default(); 3],
+            };
+            self.store_proof(set, &face, lower, gap);
         }
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
         let rounding = ROUNDING_GAP_EPS * support_eps;
         let allowed = larger(gap, larger(gap_limit.tolerance, tolerance) + rounding);
         Ok(match end {
             _ if !is_inside => Status::Rounding,
-            _ if upper.depth - lower <= allowed => Status::Converged,
+            _ if upper - lower <= allowed => Status::Converged,
             Status::Converged => Status::Rounding,
             _ => end,
         })
     }
 
-    /// Stores the result of the upper bound. `face`: returns the face through which the ray along its direction leaves
-    /// the polytope.
+    /// Stores the result of the upper bound. `face`: a face of the inner model near it, read for witness points alone.
     #[inline(always)]
     fn store_proof<const N: usize>(
         &mut self,
         set: &VertexSet<N>,
-        face: impl FnOnce() -> [Vertex; 3],
+        face: &[Vertex; 3],
         lower: f64,
         gap: f64,
     ) {
         self.is_inconsistent = self.query.is_inconsistent(set);
         let upper = &self.query.upper;
         let points = if self.request.wants_points {
-            witness_points(upper, &self.interior, set, &face(), gap)
+            witness_points(upper, &self.interior, set, face, gap)
         } else {
             [Vec3::zeros(); 2]
         };
@@ -856,6 +838,20 @@ mod tests {
             let hit = run(&md, Some(&center(-offset)), MAX_DEFAULT_POINTS, None).unwrap();
             let side = radius * height / radius.hypot(2.0 * height);
             assert!(hit.depth <= 1.01 * (side + ball_radius), "{hit:?}");
+        }
+    }
+
+    /// Closer centers need more corners than the limit allows, see [`MAX_PROVEN_POINTS`].
+    #[test]
+    fn balls_whose_centers_are_apart_are_proven() {
+        let mut r = Random::new(46);
+        for _ in 0..100 {
+            let at = r.direction() * r.within(0.17, 0.95);
+            let md = difference(ball(Vec3::zeros(), 0.5), ball(at, 0.5));
+            let mut heap = Heap::new();
+            let hit = run(&md, None, MAX_PROVEN_POINTS, Some(&mut heap)).unwrap();
+            assert_eq!(hit.status, Status::Converged, "{at}");
+            assert!((hit.depth - (1.0 - at.norm())).abs() <= TOLERANCE);
         }
     }
 }
