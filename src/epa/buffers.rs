@@ -31,16 +31,16 @@ pub const MAX_DEFAULT_POINTS: u64 = 160;
 pub const MAX_PROVEN_POINTS: u64 = 320;
 
 /// The number of vertices of the small buffers, 6 KB on the stack with their faces: enough for shallow contacts and most
-/// polytopes.
+/// polytopes, and for the directions of a refinement. (Larger ones are full only at the limit, where none follows.)
 pub const SMALL_VERTICES: usize = 24 + MAX_REFINEMENTS;
 /// The number of faces of the small buffers.
 pub const SMALL_FACES: usize = 64;
 /// The number of vertices of the large buffers, on the stack.
-pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + START_VERTICES + MAX_REFINEMENTS;
+pub const LARGE_VERTICES: usize = MAX_DEFAULT_POINTS as usize + START_VERTICES;
 /// The number of faces of the large buffers: what 44 KB of stack leave (test `costs`).
-pub const LARGE_FACES: usize = 368;
+pub const LARGE_FACES: usize = 352;
 /// The number of vertices of the buffers of an [`Arena`].
-const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + START_VERTICES + MAX_REFINEMENTS;
+const ARENA_VERTICES: usize = MAX_PROVEN_POINTS as usize + START_VERTICES;
 /// The number of faces of these buffers: for as many known differences as vertices, two faces a corner.
 const ARENA_FACES: usize = (4 * ARENA_VERTICES).next_multiple_of(16);
 /// The number of entries that a start of the polytope adds to the vertex set: the corners of a tetrahedron. So much room

@@ -38,7 +38,7 @@ use crate::epa::buffers::{
 use crate::epa::direction::refine_direction;
 use crate::epa::expand::{EpaLimits, expand};
 use crate::epa::polytope::EpaPolytope;
-use crate::epa::witness::{exit_face, witness_points};
+use crate::epa::witness::{exit_face, max_foot_distance2, witness_points};
 use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
 use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
 use crate::math::{Vec3, larger, normalise_unscaled};
@@ -306,7 +306,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         if self.query.upper.depth - lower > tolerance {
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
         }
-        self.store_proof(set, &face, lower, allowed);
+        self.store_proof(set, &face, || *portal, lower, allowed);
         Ok(true)
     }
 
@@ -486,12 +486,12 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             0.0
         };
         let interior = self.interior.v;
-        let exit_face = |query: &SupportQuery<'_, A, B>, set: &VertexSet<N>, gap: f64| {
-            exit_face(&query.upper, &interior, set, polytope, closest.face, gap)
+        let exit_face = |upper: &SupportPlane, set: &VertexSet<N>, gap: f64| {
+            exit_face(upper, &interior, set, polytope, closest.face, gap)
         };
         let mut refined = None;
         if end == Status::Converged && self.query.upper.depth - lower > tolerance {
-            let mut face = exit_face(self.query, set, self.allowed_gap());
+            let mut face = exit_face(&self.query.upper, set, self.allowed_gap());
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
             refined = Some(face);
         }
@@ -501,10 +501,11 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         if self.proof.is_none_or(is_closer) {
             let face = match refined {
                 Some(face) => face,
-                None if self.request.wants_points => exit_face(self.query, set, gap),
+                None if self.request.wants_points => exit_face(&self.query.upper, set, gap),
                 None => [Vertex::default(); 3],
             };
-            self.store_proof(set, &face, lower, gap);
+            let exit_plane = self.query.upper;
+            self.store_proof(set, &face, || exit_face(&exit_plane, set, gap), lower, gap);
         }
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
         let rounding = ROUNDING_GAP_EPS * support_eps;
@@ -517,22 +518,32 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         })
     }
 
-    /// Stores the result of the upper bound. `face`: a face of the inner model near it, read for witness points alone.
+    /// Stores the result of the upper bound. `face`: a face of the inner model near it, read for witness points alone;
+    /// `other`: returns another, if the foot is not close to the first: the ray of a refined direction may cross neither.
     #[inline(always)]
     fn store_proof<const N: usize>(
         &mut self,
         set: &VertexSet<N>,
         face: &[Vertex; 3],
+        other: impl FnOnce() -> [Vertex; 3],
         lower: f64,
         gap: f64,
     ) {
         self.is_inconsistent = self.query.is_inconsistent(set);
         let upper = &self.query.upper;
-        let points = if self.request.wants_points {
-            witness_points(upper, &self.interior, set, face, gap)
-        } else {
-            [Vec3::zeros(); 2]
-        };
+        let mut points = [Vec3::zeros(); 2];
+        if self.request.wants_points {
+            let closest =
+                |face: &[Vertex; 3]| witness_points(upper, &self.interior, set, face, gap);
+            let distance2;
+            (points, distance2) = closest(face);
+            if distance2 > max_foot_distance2(upper, gap) {
+                let found = closest(&other());
+                if found.1 < distance2 {
+                    points = found.0;
+                }
+            }
+        }
         self.proof = Some(Proof {
             upper: upper.depth,
             dir: upper.dir,

@@ -16,6 +16,8 @@ use crate::minkowski::vertex_set::{Vertex, VertexSet};
 /// 1. the face, if that point is within `gap`, metres, of the foot;
 /// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction;
 /// 3. or with one corner replaced by the interior point.
+///
+/// Returns them with the square of that distance, m².
 #[inline(always)]
 pub fn witness_points<const N: usize>(
     upper: &SupportPlane,
@@ -23,13 +25,13 @@ pub fn witness_points<const N: usize>(
     set: &VertexSet<N>,
     face: &[Vertex; 3],
     gap: f64,
-) -> [Vec3; 2] {
+) -> ([Vec3; 2], f64) {
     let foot = upper.dir * upper.depth;
     let closest = |[a, b, c]: &[Vec3; 3]| triangle(&foot, a, b, c);
     let corners = face.each_ref().map(|v| v.w);
     let mut best = closest(&corners);
     let mut replaced = None;
-    if best.distance2 > gap * lesser(gap, upper.depth) {
+    if best.distance2 > max_foot_distance2(upper, gap) {
         for point in [&upper.point, interior] {
             for i in 0..3 {
                 let mut triangle = corners;
@@ -51,7 +53,12 @@ pub fn witness_points<const N: usize>(
         points[0] += point.v1 * *weight;
         points[1] += point.v2 * *weight;
     }
-    points
+    (points, best.distance2)
+}
+
+/// Returns the square of the distance from the foot, m², within which a face is as good as any other.
+pub fn max_foot_distance2(upper: &SupportPlane, gap: f64) -> f64 {
+    gap * lesser(gap, upper.depth)
 }
 
 /// Returns the corners of the face through which the ray along the direction of the upper bound leaves the polytope,
@@ -74,7 +81,7 @@ pub fn exit_face<const N: usize, const F: usize>(
         triangle(&foot, &a, &b, &c).distance2
     };
     let mut best = (closest, distance2(closest));
-    if best.1 > gap * lesser(gap, upper.depth) {
+    if best.1 > max_foot_distance2(upper, gap) {
         for f in polytope.faces() {
             let rise = polytope.normal(f).dot(&upper.dir);
             if rise > 0.0 && polytope.offset(f) <= rise * (upper.depth + gap) {
