@@ -32,6 +32,18 @@ pub struct Callbacks {
     pub calls: unsafe extern "C-unwind" fn(*const c_void) -> c_ulong,
     pub scene: unsafe extern "C-unwind" fn(*const c_char, *mut *mut Pair) -> usize,
     pub random: unsafe extern "C-unwind" fn(c_int, c_int, usize, *mut *mut Pair) -> usize,
+    support_placed: ccd_support_fn,
+    pub place: unsafe extern "C-unwind" fn(
+        c_int,
+        *const f64,
+        *const [f64; 3],
+        *const [f64; 9],
+        *const f64,
+        c_int,
+        *const c_int,
+        *const c_int,
+    ) -> *mut c_void,
+    pub truth: unsafe extern "C-unwind" fn(*const c_void, *const c_void, f64, *mut [f64; 3], *mut f64) -> f64,
     pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
     pub end: unsafe extern "C-unwind" fn(),
 }
@@ -114,6 +126,9 @@ impl Libraries {
                 calls: function(object, "bench_calls"),
                 scene: function(object, "bench_scene"),
                 random: function(object, "bench_random"),
+                support_placed: function(object, "bench_support_placed"),
+                place: function(object, "bench_place"),
+                truth: function(object, "bench_truth"),
                 counted: function(object, "bench_counted"),
                 end: function(object, "bench_end"),
             }
@@ -145,6 +160,11 @@ impl Libraries {
             mpr_tolerance: tolerance,
             dist_tolerance: tolerance,
         }
+    }
+
+    /// From here on all shapes are those that `place` returns: polytopes climb over their edges.
+    pub fn use_placed(&mut self) {
+        self.callbacks.support = self.callbacks.support_placed;
     }
 
     /// Compiles a part of `peers.cpp` and opens it; returns why not, if that fails.

@@ -9,7 +9,6 @@ use std::ptr::null_mut;
 use ccd::internals::ffi::{
     CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t,
 };
-use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 use serde::{Deserialize, Serialize};
 
 use super::libraries::{COLD, Libraries, function};
@@ -30,8 +29,6 @@ pub enum Interface {
     Full,
     /// The distance of pairs that overlap; of others the search ends as soon as they are known to be apart.
     Distance,
-    /// W. Gao's algorithms as published.
-    Gao(Until),
     /// Another solver, with a closure of its own.
     Peer,
     /// A peer compiled into the measuring program, whose instructions are then the solver's.
@@ -66,7 +63,7 @@ const fn entry(name: &'static str, interface: Interface) -> Entry {
 }
 
 /// Every method.
-const METHODS: [Entry; 20] = [
+const METHODS: [Entry; 22] = [
     entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }),
     entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }),
     entry("libccd ccdMPRIntersect", Interface::YesNo),
@@ -79,8 +76,10 @@ const METHODS: [Entry; 20] = [
     entry("ccdPenetration", Interface::Full),
     entry("ccdPenetrationLocal", Interface::Full),
     entry("ccdPenetrationProven", Interface::Full),
-    entry("Gao 2023, Algorithm 4/5", Interface::Gao(Until::Shortcut)),
-    entry("Gao 2023, Algorithm 3", Interface::Gao(Until::Normal)),
+    entry("ccdPenetrationIncremental", Interface::Full),
+    entry("Algorithm 4/5", Interface::PeerInside),
+    entry("Algorithm 3", Interface::PeerInside),
+    entry("DEEP", Interface::PeerInside),
     entry("Bullet EPA", Interface::Peer),
     entry("FCL EPA", Interface::Peer),
     entry("parry EPA", Interface::PeerInside),
@@ -159,13 +158,10 @@ impl<'a> Method<'a> {
 
 /// Returns methods of the table that are inside the two libraries, by name, start and tolerance.
 pub fn select<'a>(libraries: &'a Libraries, list: &[(&str, Start, f64)]) -> Vec<Method<'a>> {
-    let method = |&(name, start, tolerance): &(&str, Start, f64)| match Entry::find(name).interface {
-        Interface::Gao(until) => Method::new(name, start, Some(tolerance), gao(libraries, until, start, tolerance)),
-        _ => {
-            let call = find_call(libraries, Entry::find(name));
-            let settings = libraries.settings(Entry::find(name).is_ours(), tolerance);
-            Method::new(name, start, Some(tolerance), run_call(libraries, call, start, settings))
-        }
+    let method = |&(name, start, tolerance): &(&str, Start, f64)| {
+        let call = find_call(libraries, Entry::find(name));
+        let settings = libraries.settings(Entry::find(name).is_ours(), tolerance);
+        Method::new(name, start, Some(tolerance), run_call(libraries, call, start, settings))
     };
     list.iter().map(method).collect()
 }
@@ -254,22 +250,5 @@ pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t
         let code = call(pair, &settings, &mut state, &mut out);
         // A hit; CCD_LIMIT has a sound result too.
         (code == 0 || code == CCD_LIMIT).then_some(Answer { depth: out.depth, dir: out.dir.v })
-    })
-}
-
-/// Runs the paper's algorithms, which match the published implementation but return the portal's normal.
-fn gao(libraries: &Libraries, until: Until, start: Start, tolerance: f64) -> Query<'static> {
-    let settings = Settings { max_iterations: 10_000, ..Settings::new(tolerance) };
-    let callbacks = libraries.callbacks;
-    let mut last = None;
-    Box::new(move |pair| {
-        let object = |shape| move |dir: &Vec3| Vec3::from(callbacks.support_point(shape, (*dir).into()));
-        let md = MinkowskiDifference::new(object(pair.a), object(pair.b));
-        let memory = if pair.frame == 0 { None } else { last };
-        let from = start.guess(&pair.truth).map(Vec3::from).or(memory);
-        let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let found = incremental(&md, from, None, until, &settings, |_| ()).ok()?;
-        last = Some(found.dir);
-        Some(Answer { depth: found.depth, dir: found.dir.into() })
     })
 }
