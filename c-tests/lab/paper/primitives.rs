@@ -43,8 +43,11 @@ pub fn measure(evaluation: &Evaluation, poses: &[Poses]) -> Vec<Row> {
     poses.iter().flat_map(rows).collect()
 }
 
+/// A line of a table: what it has, and its number of a row.
+pub type Line<'a> = (&'a str, fn(&Row) -> f64);
+
 /// Returns a table with a line of the paper's numbers for each pair, and lines of what is measured here.
-pub fn table(rows: &[Row], published: [[f64; 4]; 3], lines: &[(&str, fn(&Row) -> f64)]) -> String {
+pub fn table(rows: &[Row], published: [[f64; 4]; 3], lines: &[Line]) -> String {
     let head = "pair||Algorithm 4/5, 5°|25°|45°|EPA|`ccdPenetrationIncremental`, 5°|`ccdPenetrationLocal`, 5°|25°|45°|`…Proven`|\
                 `ccdMPRPenetration`|`…Warm`, 5°";
     let of = |((set, _), published): (&(&str, _), [f64; 4])| {
