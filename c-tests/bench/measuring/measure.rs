@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::callgrind::{self, Count};
 use super::libraries::Libraries;
-use super::methods::{Answer, Interface, Method, Start};
+use super::methods::{Answer, Method, Place, Start};
 use super::scene::{Pair, Scene};
 
 /// One method on one scene. Lengths in metres. A file may lack columns of newer measurements.
@@ -139,7 +139,7 @@ impl<'a> Runner<'a> {
                 let pairs = scene.pairs.iter().step_by(self.every);
                 let queries = pairs.filter(|pair| method.is_measured(pair)).count() as f64;
                 let mut solver = count.solver;
-                if matches!(method.entry.interface, Interface::PeerInside) {
+                if matches!(method.entry.place, Place::PeerInside) {
                     solver += count.program;
                 }
                 row.callbacks = Some(count.callbacks.instructions as f64 / queries);
