@@ -305,3 +305,33 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
     directions.write(&mut row);
     row
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measuring::scene::Truth;
+
+    /// A truth that turns by 1 mrad a frame, and answers that are 3 mrad off: always to the same side, or by turns to either.
+    #[test]
+    fn directions_and_jitter() {
+        let unit = |mrad: f64| Vector3::new((1e-3 * mrad).sin(), (1e-3 * mrad).cos(), 0.0);
+        let measured = |off: fn(usize) -> f64| {
+            let (mut row, mut directions) = (Row::default(), Directions::default());
+            for frame in 0..200 {
+                let truth = Truth { normal: unit(frame as f64).into(), ..Truth::default() };
+                let pair = Pair { a: std::ptr::null_mut(), b: std::ptr::null_mut(), truth, motion: 0, frame };
+                directions.add(&pair, Some((unit(frame as f64 + off(frame)), true)));
+            }
+            directions.write(&mut row);
+            [row.direction_rms, row.direction_p99, row.direction_max, row.jitter, row.true_turn]
+                .map(|x| x.expect("measured"))
+        };
+        let is_near = |a: [f64; 5], b: [f64; 5]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.01);
+        let steady = measured(|_| 3.0);
+        assert!(is_near(steady, [3.0, 3.0, 3.0, 0.0, 1.0]), "{steady:?}");
+        let restless = measured(|frame| if frame % 2 == 0 { 3.0 } else { -3.0 });
+        assert!(is_near(restless, [3.0, 3.0, 3.0, 6.0, 1.0]), "{restless:?}");
+        let once = measured(|frame| if frame == 100 { 50.0 } else { 0.0 });
+        assert!(is_near([once[1], once[2], 0.0, 0.0, once[4]], [0.0, 50.0, 0.0, 0.0, 1.0]), "{once:?}");
+    }
+}
