@@ -308,12 +308,11 @@ fn judge(libraries: &Libraries, scene: &Scene, method: &mut Method) -> Row {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::measuring::scene::Truth;
-
     /// A truth that turns by 1 mrad a frame, and answers that are 3 mrad off: always to the same side, or by turns to either.
     #[test]
     fn directions_and_jitter() {
+        use super::*;
+        use crate::measuring::scene::Truth;
         let unit = |mrad: f64| Vector3::new((1e-3 * mrad).sin(), (1e-3 * mrad).cos(), 0.0);
         let measured = |off: fn(usize) -> f64| {
             let (mut row, mut directions) = (Row::default(), Directions::default());
