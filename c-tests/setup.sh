@@ -97,7 +97,7 @@ if [ "$job" != main ] && [ "$job" != compare ]; then
     want_command xz xz-utils
     want_command valgrind valgrind
     if command -v dpkg-query >/dev/null 2>&1; then
-        want_package libccd-dev libfcl-dev libode-dev
+        want_package libccd-dev libfcl-dev libode-dev libclang-dev
         [ "$job" != lab ] || want_package libmujoco-dev libdart-dev
     fi
 fi

@@ -21,7 +21,10 @@ pub fn program(file: &str) -> Program {
     let source = sources.iter().find(|source| source.exists()).expect("a source file");
     let (library, _) = file.split_once('_').expect("a library's program");
     let own = if file.ends_with(".c") { "-std=gnu99" } else { "-isystem/usr/include/eigen3" };
-    Program::new(source).flag(own).flag("-D_GNU_SOURCE").flag(format!("-l{library}")).without_tools()
+    let program = Program::new(source).flag(own).flag("-D_GNU_SOURCE").flag(format!("-l{library}")).without_tools();
+    // FCL's octrees are those of octomap.
+    let octomap: &[&str] = if library == "fcl" { &["-loctomap", "-loctomath"] } else { &[] };
+    octomap.iter().fold(program, |program, flag| program.flag(*flag))
 }
 
 /// Output of a program.

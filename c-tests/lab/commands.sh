@@ -157,6 +157,7 @@ cargo test --test integration known_costs
 cargo test --test integration no_panic
 cargo test -p lab -- --nocapture libraries_are static_link
 cargo test -p lab charts_test::
+cargo test -p lab paper_test::
 cargo test -p lab compare::
 cargo test -p lab fcl::
 END
@@ -177,6 +178,7 @@ cargo run --release -p lab --bin engines -- distance
 END
 run "charts and recorded costs" "" "" <<'END'
 cargo bench -p lab -- charts
+cargo bench -p lab -- paper
 cargo bench -p lab -- redraw
 cargo bench -p lab -- engines
 cargo bench -p lab -- record

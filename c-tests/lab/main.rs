@@ -31,5 +31,11 @@ mod packaging;
 #[allow(dead_code)]
 mod pages;
 #[cfg(not(feature = "single"))]
+#[allow(dead_code)]
+mod paper;
+#[cfg(not(feature = "single"))]
+#[path = "paper/test.rs"]
+mod paper_test;
+#[cfg(not(feature = "single"))]
 #[path = "engines/simulations.rs"]
 mod simulations;

@@ -46,6 +46,7 @@ packages() {
 
 sh c-tests/setup.sh lab
 step charts cargo test --no-fail-fast -p lab charts_test::
+step paper cargo test --no-fail-fast -p lab paper_test::
 step compare cargo test --no-fail-fast -p lab compare::
 step fcl cargo test -p lab fcl::
 step fcl-single cargo test -p lab --features single fcl::

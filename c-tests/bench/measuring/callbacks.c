@@ -153,6 +153,70 @@ size_t bench_random(int kind, int depth, size_t n, bench_pose_t **poses)
     return pose ? n : 0;
 }
 
+/* --- pairs placed by the caller ------------------------------------------------ */
+
+/* A shape, and of a polytope with adjacency the neighbours of vertex i: neighbours[first[i]] ... neighbours[first[i + 1] - 1]. */
+typedef struct {
+    shape_t shape;
+    const int *first, *neighbours;
+    int last; /* the vertex found last */
+} bench_mesh_t;
+
+/* Returns a placed shape that is never freed; for a polytope its n vertices and their neighbours, which must outlive it. NULL
+ * without memory. */
+bench_mesh_t *bench_place(int type, const double p[3], const double pos[3], const double rot[9], const double *verts, int n,
+                          const int *first, const int *neighbours)
+{
+    bench_mesh_t *m = (bench_mesh_t *)calloc(1, sizeof *m);
+    if (!m)
+        return NULL;
+    m->shape = n > 0 ? shape_polytope(verts, n) : shape_make(type, p[0], p[1], p[2]);
+    m->first = first;
+    m->neighbours = neighbours;
+    shape_move(&m->shape, pos[0], pos[1], pos[2]);
+    shape_turn(&m->shape, rot);
+    return m;
+}
+
+/* The support function of a placed shape. Polytopes climb over their edges from the vertex found last. */
+void bench_support_placed(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    bench_mesh_t *m = (bench_mesh_t *)obj;
+    const ccd_real_t *r = m->shape.rot, *w = dir->v;
+    ccd_real_t d[3], value;
+    int best, from;
+    if (!m->first) {
+        shape_support(obj, dir, out);
+        return;
+    }
+    m->shape.calls++;
+    for (int i = 0; i < 3; i++)
+        d[i] = r[i] * w[0] + r[3 + i] * w[1] + r[6 + i] * w[2];
+    best = m->last;
+    value = shape_vertex_value(&m->shape, best, d);
+    do {
+        from = best;
+        for (int k = m->first[from]; k < m->first[from + 1]; k++) {
+            const ccd_real_t x = shape_vertex_value(&m->shape, m->neighbours[k], d);
+            if (x > value) {
+                value = x;
+                best = m->neighbours[k];
+            }
+        }
+    } while (best != from);
+    m->last = best;
+    shape_to_world(&m->shape, m->shape.verts + 3 * best, out->v);
+}
+
+/* Writes the direction of the least depth; returns that depth, and in `gap` the width of its bounds. */
+double bench_truth(const shape_t *a, const shape_t *b, double width, double n[3], double *gap)
+{
+    const truth_t t = truth_depth_within(a, b, width);
+    memcpy(n, t.n, sizeof t.n);
+    *gap = t.depth - t.lower;
+    return t.depth;
+}
+
 /* --- files -------------------------------------------------------------------- */
 
 /* Reads the poses of a pair set or of a recording. Returns their number, 0 on failure. Nothing is ever freed. */

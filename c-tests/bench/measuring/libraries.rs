@@ -12,8 +12,9 @@ use std::ffi::{CStr, c_char, c_int, c_ulong, c_void};
 use std::path::Path;
 use std::process::Command;
 
-use ccd::internals::ffi::{CCD_WARM_REALS, ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t, ccd_warm_t};
 use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
+use warmccd_bindings::libccd::{Libccd, ccd_t, ccd_vec3_t};
+use warmccd_bindings::warmccd::{CCD_WARM_REALS, Warmccd, ccd_warm_t};
 
 use super::scene::Pair;
 use crate::harness;
@@ -22,16 +23,31 @@ use crate::harness;
 const RTLD_DEEPBIND: c_int = 8;
 
 /// A state that is cold.
-pub const COLD: ccd_warm_t = ccd_warm_t { reals: [0.0; CCD_WARM_REALS], words: [0; 2] };
+pub const COLD: ccd_warm_t = ccd_warm_t { reals: [0.0; CCD_WARM_REALS as usize], words: [0; 2] };
+
+type SupportFn = unsafe extern "C-unwind" fn(*const c_void, *const ccd_vec3_t, *mut ccd_vec3_t);
+type CenterFn = unsafe extern "C-unwind" fn(*const c_void, *mut ccd_vec3_t);
 
 /// The functions of `callbacks.c`.
 #[derive(Clone, Copy)]
 pub struct Callbacks {
-    support: ccd_support_fn,
-    center: ccd_center_fn,
+    support: SupportFn,
+    center: CenterFn,
     pub calls: unsafe extern "C-unwind" fn(*const c_void) -> c_ulong,
     pub scene: unsafe extern "C-unwind" fn(*const c_char, *mut *mut Pair) -> usize,
     pub random: unsafe extern "C-unwind" fn(c_int, c_int, usize, *mut *mut Pair) -> usize,
+    support_placed: SupportFn,
+    pub place: unsafe extern "C-unwind" fn(
+        c_int,
+        *const f64,
+        *const [f64; 3],
+        *const [f64; 9],
+        *const f64,
+        c_int,
+        *const c_int,
+        *const c_int,
+    ) -> *mut c_void,
+    pub truth: unsafe extern "C-unwind" fn(*const c_void, *const c_void, f64, *mut [f64; 3], *mut f64) -> f64,
     pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
     pub end: unsafe extern "C-unwind" fn(),
 }
@@ -40,7 +56,7 @@ impl Callbacks {
     /// Returns the point of a shape farthest along a unit direction.
     #[inline]
     pub fn support_point(&self, shape: *const c_void, dir: [f64; 3]) -> [f64; 3] {
-        let (dir, mut out) = (ccd_vec3_t { v: dir }, ccd_vec3_t::default());
+        let (dir, mut out) = (ccd_vec3_t { v: dir }, ccd_vec3_t { v: [0.0; 3] });
         // SAFETY: a shape of a scene, a direction and room for a point.
         unsafe { (self.support)(shape, &dir, &mut out) };
         out.v
@@ -50,8 +66,8 @@ impl Callbacks {
 /// Everything opened; lives as long as the process.
 pub struct Libraries {
     pub callbacks: Callbacks,
-    pub system: &'static Library,
-    pub ours: &'static Library,
+    pub system: &'static Libccd,
+    pub ours: &'static Warmccd,
     /// One line: date, system, processor, libraries, compiler and flags.
     pub machine: String,
     /// One line: what instructions of a query depend on besides the source: compilers, flags, processor family.
@@ -60,11 +76,14 @@ pub struct Libraries {
     work: tempfile::TempDir,
 }
 
-fn open(path: impl AsRef<Path>) -> Result<&'static Library, libloading::Error> {
-    // SAFETY: libccd, and the objects compiled here, run no code when loaded. The
-    // handle is leaked: every function pointer taken from it stays good.
-    let library = unsafe { Library::open(Some(path.as_ref()), RTLD_LAZY | RTLD_LOCAL | RTLD_DEEPBIND) }?;
-    Ok(Box::leak(Box::new(library)))
+fn open(path: impl AsRef<Path>) -> Result<Library, libloading::Error> {
+    // SAFETY: libccd, and the objects compiled here, run no code when loaded.
+    unsafe { Library::open(Some(path.as_ref()), RTLD_LAZY | RTLD_LOCAL | RTLD_DEEPBIND) }
+}
+
+/// Keeps what is opened: every function pointer taken from it stays good.
+fn leak<T>(opened: T) -> &'static T {
+    Box::leak(Box::new(opened))
 }
 
 /// Finds a function of a library by name.
@@ -73,7 +92,7 @@ fn open(path: impl AsRef<Path>) -> Result<&'static Library, libloading::Error> {
 /// `F` must be the type of that function.
 pub unsafe fn function<F: Copy>(library: &Library, name: &str) -> F {
     // SAFETY: the caller's contract.
-    let symbol = unsafe { library.get::<F>(name) };
+    let symbol = unsafe { library.get::<F>(name.as_bytes()) };
     *symbol.unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
@@ -92,20 +111,20 @@ impl Libraries {
         let system_file = maps.split_whitespace().find(|word| word.contains("/libccd.so")).unwrap_or_default();
         let built = harness::library(harness::Precision::Double);
         let ours = open(built.dir.join("libccd.so.2")).expect("this library");
-        // SAFETY: the type is that of <ccd/warm.h>.
-        let implementation = unsafe {
-            let implementation: unsafe extern "C-unwind" fn() -> *const c_char = function(ours, "ccdImplementation");
-            CStr::from_ptr(implementation()).to_string_lossy().into_owned()
-        };
-        assert!(implementation.starts_with("warmccd "), "{implementation}");
         // SAFETY: only looked up, never called.
-        let absent = |library: &Library, name: &str| unsafe { library.get::<*const c_void>(name).is_err() };
-        assert!(absent(system, "ccdImplementation"), "the system's libccd.so.2 is this library");
+        let absent = |library: &Library, name: &str| unsafe { library.get::<*const c_void>(name.as_bytes()).is_err() };
+        assert!(absent(&system, "ccdImplementation"), "the system's libccd.so.2 is this library");
         assert!(
             absent(&Library::this(), "ccdMPRPenetration"),
             "a libccd is global in this process: libraries would call its functions, not their own"
         );
-        let object = open(&object).expect("the callbacks");
+        // SAFETY: the libraries whose headers the tables are made of.
+        let (system, ours) = unsafe { (Libccd::from_library(system), Warmccd::from_library(ours)) };
+        let (system, ours) = (leak(system.expect("libccd's functions")), leak(ours.expect("this library's functions")));
+        // SAFETY: returns a string of the library.
+        let implementation = unsafe { CStr::from_ptr(ours.ccdImplementation()) }.to_string_lossy().into_owned();
+        assert!(implementation.starts_with("warmccd "), "{implementation}");
+        let object = leak(open(&object).expect("the callbacks"));
         // SAFETY: the types are those of callbacks.c.
         let callbacks = unsafe {
             Callbacks {
@@ -114,6 +133,9 @@ impl Libraries {
                 calls: function(object, "bench_calls"),
                 scene: function(object, "bench_scene"),
                 random: function(object, "bench_random"),
+                support_placed: function(object, "bench_support_placed"),
+                place: function(object, "bench_place"),
+                truth: function(object, "bench_truth"),
                 counted: function(object, "bench_counted"),
                 end: function(object, "bench_end"),
             }
@@ -131,11 +153,10 @@ impl Libraries {
 
     /// Returns the settings of a query of this library, or of system libccd, over the benchmark's callbacks.
     pub fn settings(&self, is_ours: bool, tolerance: f64) -> ccd_t {
-        let library = if is_ours { self.ours } else { self.system };
+        let first_dir = if is_ours { self.ours.ccdFirstDirDefault } else { self.system.ccdFirstDirDefault };
         let Callbacks { support, center, .. } = self.callbacks;
         ccd_t {
-            // SAFETY: the type is that of <ccd/ccd.h>.
-            first_dir: Some(unsafe { function(library, "ccdFirstDirDefault") }),
+            first_dir: Some(first_dir),
             support1: Some(support),
             support2: Some(support),
             center1: Some(center),
@@ -147,11 +168,16 @@ impl Libraries {
         }
     }
 
+    /// From here on all shapes are those that `place` returns: polytopes climb over their edges.
+    pub fn use_placed(&mut self) {
+        self.callbacks.support = self.callbacks.support_placed;
+    }
+
     /// Compiles a part of `peers.cpp` and opens it; returns why not, if that fails.
     pub fn peer(&self, part: &str, flags: &[String], linked: &[String]) -> Result<&'static Library, String> {
         let object = self.work.path().join(format!("{part}.so"));
         compile(true, flags, "lab/charts/peers.cpp", &object, linked)?;
-        open(&object).map_err(|e| e.to_string())
+        open(&object).map(leak).map_err(|e| e.to_string())
     }
 }
 

@@ -6,32 +6,19 @@
 use std::ffi::{c_int, c_uint, c_void};
 use std::ptr::null_mut;
 
-use ccd::internals::ffi::{
-    CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_t, ccd_vec3_t, ccd_warm_t,
-};
-use ccd::internals::{MinkowskiDifference, Settings, Until, Vec3, incremental};
 use serde::{Deserialize, Serialize};
 
-use super::libraries::{COLD, Libraries, function};
+use warmccd_bindings::libccd::{ccd_t, ccd_vec3_t};
+use warmccd_bindings::warmccd::{CCD_LIMIT, CCD_WANT_POINTS, ccd_distance_t, ccd_penetration_t, ccd_warm_t};
+
+use super::libraries::{COLD, Libraries};
 use super::scene::{Pair, Truth};
 
-/// Interface of a method: the arguments of a library's call behind the two objects and their settings.
+/// Where a method's solver is.
 #[derive(Clone, Copy)]
-pub enum Interface {
-    /// None; the call returns 1 or 0.
-    YesNo,
-    /// Warm state; the call returns 1 or 0.
-    YesNoWarm,
-    /// Depth, direction, position, which may be NULL.
-    Depth { has_pos: bool },
-    /// Warm state, depth, direction, position.
-    DepthWarm,
-    /// Warm state, wanted outputs, result.
-    Full,
-    /// The distance of pairs that overlap; of others the search ends as soon as they are known to be apart.
-    Distance,
-    /// W. Gao's algorithms as published.
-    Gao(Until),
+pub enum Place {
+    /// In one of the two libraries.
+    Library,
     /// Another solver, with a closure of its own.
     Peer,
     /// A peer compiled into the measuring program, whose instructions are then the solver's.
@@ -42,7 +29,7 @@ pub enum Interface {
 pub struct Entry {
     /// In tables and pictures; the first word that begins with ccd is the function of a library's call.
     pub name: &'static str,
-    pub interface: Interface,
+    pub place: Place,
 }
 
 impl Entry {
@@ -61,32 +48,34 @@ impl Entry {
     }
 }
 
-const fn entry(name: &'static str, interface: Interface) -> Entry {
-    Entry { name, interface }
+const fn entry(name: &'static str, place: Place) -> Entry {
+    Entry { name, place }
 }
 
 /// Every method.
-const METHODS: [Entry; 20] = [
-    entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }),
-    entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }),
-    entry("libccd ccdMPRIntersect", Interface::YesNo),
-    entry("ccdMPRPenetration", Interface::Depth { has_pos: false }),
-    entry("ccdMPRPenetration, pos", Interface::Depth { has_pos: true }),
-    entry("ccdGJKPenetration", Interface::Depth { has_pos: false }),
-    entry("ccdMPRPenetrationWarm", Interface::DepthWarm),
-    entry("ccdIntersect", Interface::YesNoWarm),
-    entry("ccdSignedDistance", Interface::Distance),
-    entry("ccdPenetration", Interface::Full),
-    entry("ccdPenetrationLocal", Interface::Full),
-    entry("ccdPenetrationProven", Interface::Full),
-    entry("Gao 2023, Algorithm 4/5", Interface::Gao(Until::Shortcut)),
-    entry("Gao 2023, Algorithm 3", Interface::Gao(Until::Normal)),
-    entry("Bullet EPA", Interface::Peer),
-    entry("FCL EPA", Interface::Peer),
-    entry("parry EPA", Interface::PeerInside),
-    entry("MuJoCo 3 ccd", Interface::Peer),
-    entry("Coal 3 EPA", Interface::Peer),
-    entry("Jolt 5 EPA", Interface::Peer),
+const METHODS: [Entry; 22] = [
+    entry("libccd ccdMPRPenetration", Place::Library),
+    entry("libccd ccdGJKPenetration", Place::Library),
+    entry("libccd ccdMPRIntersect", Place::Library),
+    entry("ccdMPRPenetration", Place::Library),
+    entry("ccdMPRPenetration, pos", Place::Library),
+    entry("ccdGJKPenetration", Place::Library),
+    entry("ccdMPRPenetrationWarm", Place::Library),
+    entry("ccdIntersect", Place::Library),
+    entry("ccdSignedDistance", Place::Library),
+    entry("ccdPenetration", Place::Library),
+    entry("ccdPenetrationLocal", Place::Library),
+    entry("ccdPenetrationProven", Place::Library),
+    entry("ccdPenetrationIncremental", Place::Library),
+    entry("Algorithm 4/5", Place::PeerInside),
+    entry("Algorithm 3", Place::PeerInside),
+    entry("DEEP", Place::PeerInside),
+    entry("Bullet EPA", Place::Peer),
+    entry("FCL EPA", Place::Peer),
+    entry("parry EPA", Place::PeerInside),
+    entry("MuJoCo 3 ccd", Place::Peer),
+    entry("Coal 3 EPA", Place::Peer),
+    entry("Jolt 5 EPA", Place::Peer),
 ];
 
 /// Start of a search; in files the degrees by which a guess is off the true direction, `cold` or `warm`.
@@ -159,13 +148,10 @@ impl<'a> Method<'a> {
 
 /// Returns methods of the table that are inside the two libraries, by name, start and tolerance.
 pub fn select<'a>(libraries: &'a Libraries, list: &[(&str, Start, f64)]) -> Vec<Method<'a>> {
-    let method = |&(name, start, tolerance): &(&str, Start, f64)| match Entry::find(name).interface {
-        Interface::Gao(until) => Method::new(name, start, Some(tolerance), gao(libraries, until, start, tolerance)),
-        _ => {
-            let call = find_call(libraries, Entry::find(name));
-            let settings = libraries.settings(Entry::find(name).is_ours(), tolerance);
-            Method::new(name, start, Some(tolerance), run_call(libraries, call, start, settings))
-        }
+    let method = |&(name, start, tolerance): &(&str, Start, f64)| {
+        let call = find_call(libraries, Entry::find(name));
+        let settings = libraries.settings(Entry::find(name).is_ours(), tolerance);
+        Method::new(name, start, Some(tolerance), run_call(libraries, call, start, settings))
     };
     list.iter().map(method).collect()
 }
@@ -190,62 +176,58 @@ pub fn depth_call(f: Depth, has_pos: bool) -> Call {
     })
 }
 
+/// Returns a call that tells whether objects overlap: 1 or 0.
+fn yes_no_call(f: unsafe extern "C-unwind" fn(Object, Object, Ccd) -> c_int) -> Call {
+    // SAFETY: a query over the callbacks' own shapes.
+    Box::new(move |pair, ccd, _, _| unsafe { f(pair.a, pair.b, ccd) } - 1)
+}
+
+/// Returns a call with the interface of `ccdPenetration`.
+fn full_call(
+    f: unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, c_uint, *mut ccd_penetration_t) -> c_int,
+) -> Call {
+    // SAFETY: a query over the callbacks' own shapes.
+    Box::new(move |pair, ccd, warm, out| unsafe { f(pair.a, pair.b, ccd, warm, CCD_WANT_POINTS, out) })
+}
+
 /// Finds the call of a row of the table.
 fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
-    type YesNo = unsafe extern "C-unwind" fn(Object, Object, Ccd) -> c_int;
-    type YesNoWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm) -> c_int;
-    type DepthWarm = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, *mut f64, Point, Point) -> c_int;
-    type Full = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, c_uint, *mut ccd_penetration_t) -> c_int;
-    type Distance =
-        unsafe extern "C-unwind" fn(Object, Object, Ccd, f64, f64, f64, Warm, c_uint, *mut ccd_distance_t) -> c_int;
-    let library = if entry.is_ours() { libraries.ours } else { libraries.system };
-    let symbol = entry.name.split([' ', ',']).find(|word| word.starts_with("ccd")).unwrap_or_default();
-    // SAFETY: the table's interfaces are those of the C headers; queries over the callbacks' own shapes.
-    unsafe {
-        match entry.interface {
-            Interface::YesNo => {
-                let f: YesNo = function(library, symbol);
-                Box::new(move |pair, ccd, _, _| f(pair.a, pair.b, ccd) - 1)
-            }
-            Interface::YesNoWarm => {
-                let f: YesNoWarm = function(library, symbol);
-                Box::new(move |pair, ccd, warm, _| f(pair.a, pair.b, ccd, warm) - 1)
-            }
-            Interface::Depth { has_pos } => depth_call(function(library, symbol), has_pos),
-            Interface::DepthWarm => {
-                let f: DepthWarm = function(library, symbol);
-                Box::new(move |pair, ccd, warm, out| {
-                    f(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, null_mut())
-                })
-            }
-            Interface::Full => {
-                let f: Full = function(library, symbol);
-                Box::new(move |pair, ccd, warm, out| f(pair.a, pair.b, ccd, warm, CCD_WANT_POINTS, out))
-            }
-            Interface::Distance => {
-                let f: Distance = function(library, symbol);
-                Box::new(move |pair, ccd, warm, out| {
-                    let mut distance = std::mem::zeroed();
-                    let code = f(pair.a, pair.b, ccd, 0.0, 0.0, 0.0, warm, 0, &mut distance);
-                    (out.depth, out.dir) = (-distance.distance, distance.normal);
-                    code
-                })
-            }
-            _ => panic!("{} is no library's call", entry.name),
-        }
+    let Libraries { system, ours, .. } = *libraries;
+    match entry.name {
+        "libccd ccdMPRPenetration" => depth_call(system.ccdMPRPenetration, true),
+        "libccd ccdGJKPenetration" => depth_call(system.ccdGJKPenetration, true),
+        "libccd ccdMPRIntersect" => yes_no_call(system.ccdMPRIntersect),
+        "ccdMPRPenetration" => depth_call(ours.ccdMPRPenetration, false),
+        "ccdMPRPenetration, pos" => depth_call(ours.ccdMPRPenetration, true),
+        "ccdGJKPenetration" => depth_call(ours.ccdGJKPenetration, false),
+        "ccdPenetration" => full_call(ours.ccdPenetration),
+        "ccdPenetrationLocal" => full_call(ours.ccdPenetrationLocal),
+        "ccdPenetrationProven" => full_call(ours.ccdPenetrationProven),
+        "ccdPenetrationIncremental" => full_call(ours.ccdPenetrationIncremental),
+        // SAFETY, here and below: a query over the callbacks' own shapes.
+        "ccdMPRPenetrationWarm" => Box::new(|pair, ccd, warm, out| unsafe {
+            ours.ccdMPRPenetrationWarm(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, null_mut())
+        }),
+        "ccdIntersect" => Box::new(|pair, ccd, warm, _| unsafe { ours.ccdIntersect(pair.a, pair.b, ccd, warm) } - 1),
+        // Of pairs that do not overlap the search ends as soon as they are known to be apart.
+        "ccdSignedDistance" => Box::new(|pair, ccd, warm, out| unsafe {
+            let mut distance: ccd_distance_t = std::mem::zeroed();
+            let code = ours.ccdSignedDistance(pair.a, pair.b, ccd, 0.0, 0.0, 0.0, warm, 0, &mut distance);
+            (out.depth, out.dir) = (-distance.distance, distance.normal);
+            code
+        }),
+        name => panic!("{name} is no library's call"),
     }
 }
 
 /// Runs a library's call. Every guess is a fresh state, `Warm` one state a motion.
 pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t) -> Query<'static> {
-    type WarmGuess = unsafe extern "C-unwind" fn(Warm, *const ccd_vec3_t);
-    // SAFETY: the type is that of <ccd/warm.h>.
-    let warm_guess: WarmGuess = unsafe { function(libraries.ours, "ccdWarmGuess") };
+    let ours = libraries.ours;
     let mut state = COLD;
     Box::new(move |pair| {
         if let Some(v) = start.guess(&pair.truth) {
             // SAFETY: a state and a direction.
-            unsafe { warm_guess(&mut state, &ccd_vec3_t { v }) };
+            unsafe { ours.ccdWarmGuess(&mut state, &ccd_vec3_t { v }) };
         } else if start != Start::Warm || pair.frame == 0 {
             state = COLD;
         }
@@ -253,23 +235,6 @@ pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t
         let mut out: ccd_penetration_t = unsafe { std::mem::zeroed() };
         let code = call(pair, &settings, &mut state, &mut out);
         // A hit; CCD_LIMIT has a sound result too.
-        (code == 0 || code == CCD_LIMIT).then_some(Answer { depth: out.depth, dir: out.dir.v })
-    })
-}
-
-/// Runs the paper's algorithms, which match the published implementation but return the portal's normal.
-fn gao(libraries: &Libraries, until: Until, start: Start, tolerance: f64) -> Query<'static> {
-    let settings = Settings { max_iterations: 10_000, ..Settings::new(tolerance) };
-    let callbacks = libraries.callbacks;
-    let mut last = None;
-    Box::new(move |pair| {
-        let object = |shape| move |dir: &Vec3| Vec3::from(callbacks.support_point(shape, (*dir).into()));
-        let md = MinkowskiDifference::new(object(pair.a), object(pair.b));
-        let memory = if pair.frame == 0 { None } else { last };
-        let from = start.guess(&pair.truth).map(Vec3::from).or(memory);
-        let from = from.unwrap_or_else(|| pair.truth.cold.into());
-        let found = incremental(&md, from, None, until, &settings, |_| ()).ok()?;
-        last = Some(found.dir);
-        Some(Answer { depth: found.depth, dir: found.dir.into() })
+        (code == 0 || code == CCD_LIMIT as c_int).then_some(Answer { depth: out.depth, dir: out.dir.v })
     })
 }

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::figure::{self, Axis, Panel, SUPPORTS, TIME};
+use super::figure::{self, Axis, Panel, SUPPORTS, TIME, Unit};
 use super::peers::Peers;
 use super::times;
 use crate::measuring::libraries::Libraries;
@@ -13,6 +13,7 @@ use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
 use crate::measuring::recorded::{MOTIONS, RANDOM};
 use crate::measuring::scene::Scene;
+use crate::paper::{ALGORITHM_4_5, published};
 
 pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row> {
     let (num_poses, repetitions, step) = if is_quick { (100, 3, 2) } else { (usize::MAX, 9, 1) };
@@ -21,20 +22,20 @@ pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row>
         let scene = Scene::load(libraries, set, num_poses);
         let is_motion = scene.is_motion();
         let (local, proven) = if is_motion { (Start::Warm, Start::Warm) } else { (Start::Guess5, Start::None) };
-        let mut list = Vec::new();
+        let (mut list, mut algorithm_4_5) = (Vec::new(), Vec::new());
         // Metres; libccd's EPA compares squares with it.
         for t in (2..=12).step_by(step).map(|k| 10_f64.powi(-k)) {
+            algorithm_4_5.push(published::method(libraries, true, local, t));
             list.extend([
                 ("libccd ccdMPRPenetration", Start::None, t),
                 ("libccd ccdGJKPenetration", Start::None, t),
-                ("Gao 2023, Algorithm 4/5", local, t),
-                ("Gao 2023, Algorithm 3", local, t),
                 ("ccdMPRPenetration", Start::None, t),
                 ("ccdPenetrationLocal", local, t),
                 ("ccdPenetrationProven", proven, t),
             ]);
         }
         let mut methods = select(libraries, &list);
+        methods.extend(algorithm_4_5);
         methods.extend(peers.methods(libraries));
         times::runner(libraries, repetitions).rows(&scene, methods)
     };
@@ -42,29 +43,52 @@ pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row>
 }
 
 /// The last digit of a metre is the finest error.
-const ERROR: Axis = ("mean |depth error|, m", |row| Some(row.mean_error.max(1e-16)));
+const ERROR: Axis =
+    Axis { title: "mean error of the depth", unit: Unit::Prefixed("m"), value: |row| Some(row.mean_error.max(1e-16)) };
+const DIRECTION: Axis = Axis {
+    title: "error of the direction, 99 %",
+    unit: Unit::Prefixed("rad"),
+    value: |row| row.direction_p99.map(|mrad| (1e-3 * mrad).max(1e-16)),
+};
+const JITTER: Axis = Axis {
+    title: "jitter a frame, root of the mean square",
+    unit: Unit::Prefixed("rad"),
+    value: |row| row.jitter.map(|mrad| (1e-3 * mrad).max(1e-16)),
+};
 
-/// Draws time and support points over the error: a panel for each set and a curve for each method.
+/// The lines of the pictures; the file has the others too.
+const SHOWN: [&str; 8] = [
+    "libccd ccdMPRPenetration",
+    "libccd ccdGJKPenetration",
+    ALGORITHM_4_5,
+    "ccdMPRPenetration",
+    "ccdPenetrationLocal",
+    "ccdPenetrationProven",
+    "Bullet EPA",
+    "FCL EPA",
+];
+
+/// Draws time and support points over errors: for each set a panel of depths and one of directions, of motions one of jitter.
 pub fn draw(out: &Path, machine: &str, rows: &[Row]) {
-    let (place, rest) = machine.split_once("; ").unwrap_or((machine, ""));
-    let version = rest.split(" (").next().unwrap_or("");
     let notes = [
-        "left of the dashes the truth is not known".to_owned(),
-        format!("thick: this library; {place}; {version}; all in one process, rustc and gcc -O3"),
+        "left is more exact, down is cheaper; left of the dots the truth is not known".to_owned(),
+        format!("thick: this library; {}", super::short(machine)),
     ];
-    for (sets, file, what) in [
-        (&RANDOM[..], "accuracy", "independent poses, guesses 5° off"),
-        (&MOTIONS, "frames", "motions of 0.1° and 0.1 mm a frame, warm"),
+    for (sets, file, beside, what) in [
+        (&RANDOM[..], "accuracy", DIRECTION, "independent poses, guesses 5° off"),
+        (&MOTIONS, "frames", JITTER, "motions of 0.1° and 0.1 mm a frame"),
     ] {
         for (cost, name, y) in [("Time", "time", TIME), ("Support points", "supports", SUPPORTS)] {
-            let panel = |set: &&str| {
-                let rows: Vec<&Row> = rows.iter().filter(|row| row.set == *set).collect();
+            let panels = |set: &&str| {
+                let rows: Vec<&Row> =
+                    rows.iter().filter(|row| row.set == *set && SHOWN.contains(&&*row.method)).collect();
                 let limit = rows.first().map(|row| row.truth_gap);
-                Panel { title: super::kind(set), x: ERROR, y, rows, limit }
+                let depths = Panel { title: super::kind(set), x: ERROR, y, rows: rows.clone(), limit };
+                [depths, Panel { title: super::kind(set), x: beside, y, rows, limit: None }]
             };
             let path = out.join(format!("{file}_{name}.svg"));
-            let title = format!("{cost} against error: {what}");
-            figure::grid(&path, &title, sets.iter().map(panel).collect(), &notes).expect("a picture");
+            let title = format!("{cost} against errors: {what}");
+            figure::grid(&path, &title, 2, sets.iter().flat_map(panels).collect(), &notes).expect("a picture");
         }
     }
 }

@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use super::OUT;
+use super::{ENGINES, OUT};
 use crate::charts::peers::{self, Peers};
 use crate::harness;
 use crate::measuring::libraries::Libraries;
@@ -71,7 +71,8 @@ pub fn run() {
     }
     peers.print_missing();
     rows.sort_by(|a, b| a.instructions().total_cmp(&b.instructions()));
-    csv::write(&Path::new(OUT).join("engines.csv"), &libraries.machine, &rows);
+    csv::write(&Path::new(OUT).join(ENGINES), &libraries.machine, &rows);
+    super::front::draw(&Path::new(OUT).join("front.svg"), &libraries.machine, &rows);
     let table = table(&rows);
     println!("{table}");
     write_between_marks("README.md", "table engines", &format!("{table}\n"));

@@ -11,6 +11,8 @@ mod harness;
 mod measuring;
 #[path = "../pages.rs"]
 mod pages;
+#[path = "../paper/mod.rs"]
+mod paper;
 
 use std::path::Path;
 
@@ -22,7 +24,8 @@ use measuring::{callgrind, csv};
 const USAGE: &str = "\
 usage: cargo bench -p lab -- COMMAND
   charts [--quick]  speed against accuracy, as CSV and SVG, and the page
-  redraw            the pictures and their page from the CSV files that are there
+  paper [--quick]   the tables and figures of W. Gao's paper, as CSV and SVG, and their page
+  redraw            the pictures and their pages from the CSV files that are there
   record            the support counts, errors, instructions and mispredictions that a test judges
   engines           this library beside other engines on recorded contacts; downloads what it can";
 
@@ -34,7 +37,12 @@ fn main() {
         ["record"] => record(),
         ["charts"] => charts::run(out, false),
         ["charts", "--quick"] => charts::run(out, true),
-        ["redraw"] => charts::redraw(out),
+        ["paper"] => paper::run(Path::new(paper::OUT), false),
+        ["paper", "--quick"] => paper::run(Path::new(paper::OUT), true),
+        ["redraw"] => {
+            charts::redraw(out);
+            paper::redraw(Path::new(paper::OUT));
+        }
         ["engines"] => charts::engines::run(),
         _ => {
             eprintln!("{USAGE}");

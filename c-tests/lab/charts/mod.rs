@@ -5,8 +5,10 @@
 //! costs.
 
 pub mod accuracy;
+pub mod coherence;
 pub mod engines;
 pub mod figure;
+pub mod front;
 pub mod peers;
 pub mod results;
 pub mod times;
@@ -20,8 +22,11 @@ use peers::Peers;
 /// Folder of the committed figures and pictures.
 pub const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../bench/charts");
 
-/// Name of the figures in their folder.
+/// Names of the figures in their folder: speed against accuracy, and motions by step.
 const FIGURES: &str = "accuracy.csv";
+const MOTIONS: &str = "coherence.csv";
+/// That of other engines on recorded contacts.
+pub const ENGINES: &str = "engines.csv";
 
 /// Returns the name of a pair set in words.
 pub fn kind(set: &str) -> String {
@@ -36,11 +41,21 @@ pub fn kind(set: &str) -> String {
     shapes.join(" – ")
 }
 
+/// Returns processor, libraries and versions of a line that names the machine, for the foot of a picture.
+pub fn short(machine: &str) -> String {
+    let (place, rest) = machine.split_once("; ").unwrap_or((machine, ""));
+    let version = rest.split(" (").next().unwrap_or("");
+    format!("{place}; {version}; all in one process, rustc and gcc -O3")
+}
+
 /// Draws the pictures and writes the page from the figures that are there.
 pub fn redraw(out: &Path) {
     let (machine, rows) = csv::read(&out.join(FIGURES));
     accuracy::draw(out, &machine, &rows);
-    results::write(out, &machine, &rows);
+    // Always of the committed figures: `engines` measures them.
+    let (machine_of_engines, engines) = csv::read(&Path::new(OUT).join(ENGINES));
+    front::draw(&out.join("front.svg"), &machine_of_engines, &engines);
+    results::write(out, &machine, &rows, &csv::read(&out.join(MOTIONS)).1);
 }
 
 /// Measures and draws; `is_quick`: fewer poses, tolerances and repetitions, two minutes.
@@ -51,5 +66,6 @@ pub fn run(out: &Path, is_quick: bool) {
     peers.print_missing();
     std::fs::create_dir_all(out).expect("the folder for the charts");
     csv::write(&out.join(FIGURES), &libraries.machine, &accuracy::measure(&libraries, &peers, is_quick));
+    csv::write(&out.join(MOTIONS), &libraries.machine, &coherence::measure(&libraries, is_quick));
     redraw(out);
 }

@@ -5,81 +5,79 @@
 
 use std::path::Path;
 
+use super::coherence;
 use crate::harness;
 use crate::measuring::csv;
 use crate::measuring::ledger::{self, Cost};
 use crate::measuring::measure::Row;
 use crate::measuring::methods::Start;
-use crate::measuring::recorded::{self, MOTIONS, Recorded};
+use crate::measuring::recorded::RANDOM;
 use crate::measuring::scene::{DEPTHS, KINDS};
 use crate::pages::{between_marks, markdown};
+use crate::paper::ALGORITHM_4_5;
 
 fn number(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.1}"))
 }
 
-/// Pair sets like those of the paper's Table III; how many times faster than EPA its method is there with guesses 5° off;
-/// and the support points that its implementation (mind-fcl, its convergence checked once more) takes on the poses of the
-/// set at a tolerance of 1e-6, through the same callbacks: measured once, elsewhere.
-const PAPER: [(&str, f64, f64); 3] = [("sph_sph", 44.8, 56.4), ("cap_cap", 24.7, 48.0), ("sph_cap", 30.8, 54.5)];
+/// Methods of the tables of directions, at 1e-6; local searches from guesses 5° off, on motions warm.
+const DIRECTIONS: [(&str, Start, Start); 7] = [
+    ("libccd ccdMPRPenetration", Start::None, Start::None),
+    ("libccd ccdGJKPenetration", Start::None, Start::None),
+    (ALGORITHM_4_5, Start::Guess5, Start::Warm),
+    ("ccdPenetrationLocal", Start::Guess5, Start::Warm),
+    ("ccdPenetrationProven", Start::None, Start::Warm),
+    ("ccdMPRPenetration", Start::None, Start::None),
+    ("FCL EPA", Start::None, Start::None),
+];
 
-/// The tolerance at which the paper's algorithms need the support points of that implementation.
-const AS_PUBLISHED: f64 = 1e-5;
+/// Returns milliradians with two digits.
+fn mrad(value: Option<f64>) -> String {
+    match value {
+        None => "-".to_owned(),
+        Some(v) if v < 1e-3 => "0.00".to_owned(),
+        Some(v) => format!("{v:.*}", (1 - v.log10().floor() as i32).clamp(0, 3) as usize),
+    }
+}
 
-/// Compares the paper's method with this library's: time of libccd's EPA over theirs, and support points.
-fn paper(rows: &[Row]) -> String {
-    const GAO: (&str, Start, f64) = ("Gao 2023, Algorithm 4/5", Start::Guess5, AS_PUBLISHED);
-    const LOCAL: (&str, Start, f64) = ("ccdPenetrationLocal", Start::Guess5, 1e-6);
-    const PROVEN: (&str, Start, f64) = ("ccdPenetrationProven", Start::None, 1e-6);
-    let lines = PAPER.iter().map(|(set, faster, published)| {
-        let find = |(method, start, tolerance)| {
-            let is_wanted =
-                |r: &&Row| (&*r.set, &*r.method, r.start, r.tolerance) == (*set, method, start, Some(tolerance));
-            rows.iter().find(is_wanted)
+/// Returns the errors of the directions of independent poses: root of the mean square, 99 %, largest.
+fn directions(rows: &[Row]) -> String {
+    let lines = RANDOM.map(|set| {
+        let cell = |(method, start, _)| {
+            let is_wanted = |r: &&Row| (&*r.set, &*r.method, r.start, r.tolerance) == (set, method, start, Some(1e-6));
+            rows.iter()
+                .find(is_wanted)
+                .map_or("-".to_owned(), |r| [r.direction_rms, r.direction_p99, r.direction_max].map(mrad).join(" / "))
         };
-        let ns = |method| find(method).and_then(|row| row.ns);
-        let ratio = |method, epa| {
-            let epa = ns(("libccd ccdGJKPenetration", Start::None, epa));
-            number(epa.zip(ns(method)).map(|(epa, ns)| epa / ns))
-        };
-        let supports = |method| number(find(method).map(|row| row.supports));
-        let figures = [
-            ratio(LOCAL, 1e-6),
-            ratio(LOCAL, 1e-10),
-            ratio(PROVEN, 1e-6),
-            ratio(GAO, 1e-6),
-            ratio(GAO, 1e-10),
-            faster.to_string(),
-            supports(LOCAL),
-            supports(GAO),
-            number(Some(*published)),
-        ];
-        [vec![super::kind(set)], figures.into()].concat()
+        [vec![super::kind(set)], DIRECTIONS.map(cell).into()].concat()
     });
-    let head = "pair|local, EPA 1e-6|local, EPA 1e-10|proven, EPA 1e-6|\
-                Algorithm 4/5, EPA 1e-6|Algorithm 4/5, EPA 1e-10|*in the paper*|\
-                support points, local|Algorithm 4/5|*published*";
+    let head =
+        "pair|libccd MPR|libccd EPA|Algorithm 4/5, 5°|`ccdPenetrationLocal`, 5°|`…Proven`|`ccdMPRPenetration`|FCL EPA";
     markdown(head, lines)
 }
 
-/// Returns the recorded support points of the calls that start from a state, on motions, and cold.
-fn coherence(recorded: &[Recorded]) -> String {
-    let columns = [
-        ("ccdMPRPenetration", Start::None),
-        ("ccdMPRPenetrationWarm", Start::Warm),
-        ("ccdPenetrationLocal", Start::Cold),
-        ("ccdPenetrationLocal", Start::Warm),
-        ("ccdPenetrationProven", Start::None),
-        ("ccdPenetrationProven", Start::Warm),
-    ];
-    let lines = MOTIONS.map(|set| {
-        let supports = |(method, start)| {
-            let is_wanted = |r: &&Recorded| (&*r.set, &*r.method, r.start, r.tolerance) == (set, method, start, 1e-6);
-            number(recorded.iter().find(is_wanted).map(|row| row.supports))
-        };
-        [vec![super::kind(set)], columns.map(supports).into()].concat()
+/// Returns support points over motions, cold and warm side by side.
+fn coherence(rows: &[Row]) -> String {
+    let lines = coherence::sets().map(|(set, degrees)| {
+        let supports = |(method, start)| number(coherence::find(rows, &set, method, start).map(|row| row.supports));
+        [vec![super::kind(&set), format!("{degrees}°")], coherence::METHODS.map(supports).into()].concat()
     });
-    markdown("pair|`ccdMPRPenetration`|warm|`ccdPenetrationLocal`|warm|`ccdPenetrationProven`|warm", lines)
+    let head = "pair|a frame|libccd MPR|libccd EPA|Algorithm 4/5|warm|`ccdMPRPenetration`|warm|\
+                `ccdPenetrationLocal`|warm|`ccdPenetrationProven`|warm";
+    markdown(head, lines)
+}
+
+/// Returns how far directions turn from frame to frame beside the true turn.
+fn jitter(rows: &[Row]) -> String {
+    let lines = coherence::sets().map(|(set, degrees)| {
+        let of = |(method, start)| coherence::find(rows, &set, method, start);
+        let turn = mrad(of(coherence::METHODS[0]).and_then(|row| row.true_turn));
+        let jitter = |method| mrad(of(method).and_then(|row| row.jitter));
+        [vec![super::kind(&set), format!("{degrees}°"), turn], coherence::METHODS.map(jitter).into()].concat()
+    });
+    let head = "pair|a frame|true turn|libccd MPR|libccd EPA|Algorithm 4/5|warm|`ccdMPRPenetration`|warm|\
+                `ccdPenetrationLocal`|warm|`ccdPenetrationProven`|warm";
+    markdown(head, lines)
 }
 
 /// Returns instructions and, in parentheses, mispredicted branches of a query.
@@ -113,13 +111,14 @@ fn instructions_by_depth(costs: &[Cost]) -> String {
     markdown(&format!("pair|method|{}", DEPTHS.join("|")), lines)
 }
 
-/// Writes the page's tables between their marks: of these rows, and of the recorded costs.
-pub fn write(out: &Path, machine: &str, rows: &[Row]) {
+/// Writes the page's tables between their marks: of these rows, of those of motions, and of the recorded costs.
+pub fn write(out: &Path, machine: &str, rows: &[Row], motions: &[Row]) {
     let (_, costs) = csv::read::<Cost>(&ledger::file());
     let tables = [
         ("MACHINE", machine.to_owned()),
-        ("PAPER", paper(rows)),
-        ("COHERENCE", coherence(&csv::read(&recorded::file()).1)),
+        ("DIRECTIONS", directions(rows)),
+        ("COHERENCE", coherence(motions)),
+        ("JITTER", jitter(motions)),
         ("INSTRUCTIONS", instructions(&costs)),
         ("DEPTHS", instructions_by_depth(&costs)),
     ];

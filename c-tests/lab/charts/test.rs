@@ -11,7 +11,11 @@ use crate::measuring::measure::Row;
 fn quick_charts_are_whole_and_sound() {
     let out = tempfile::tempdir().expect("a temporary directory");
     charts::run(out.path(), true);
-    let (_, rows) = csv::read::<Row>(&out.path().join("accuracy.csv"));
+    let read = |name: &str| csv::read::<Row>(&out.path().join(name)).1;
+    let motions = read("coherence.csv");
+    assert_eq!(motions.len(), 18 * 10);
+    assert!(motions.iter().all(|row| row.jitter.is_some() && row.direction_rms.is_some()));
+    let rows = [read("accuracy.csv"), motions].concat();
     assert!(rows.len() > 500, "{} rows", rows.len());
     for row in &rows {
         let numbers =
@@ -22,7 +26,7 @@ fn quick_charts_are_whole_and_sound() {
             assert!(row.missed == 0.0 && row.shallow == 0.0, "{row:?}");
         }
     }
-    for name in ["accuracy_supports", "accuracy_time", "frames_supports", "frames_time"] {
+    for name in ["accuracy_supports", "accuracy_time", "frames_supports", "frames_time", "front"] {
         let path = out.path().join(name).with_extension("svg");
         let picture = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"), "{}", path.display());

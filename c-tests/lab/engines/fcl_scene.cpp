@@ -9,12 +9,14 @@
  *   random     in a new random pose each frame, with contacts
  *
  * `primitives` are boxes, capsules, cylinders, cones and ellipsoids, but for pairs of boxes, for which FCL has a closed
- * form; `hulls` ellipsoids of 160 corners.
+ * form; `hulls` ellipsoids of 160 corners. `mesh` is a piece of terrain, 1 m wide, of 1,152 triangles and a primitive, `octree`
+ * the same terrain as occupied cubes of 3 cm and a primitive, `octree-mesh` that and a piece of terrain.
  *
  * Compiled plain, the narrow phase is FCL's own on the loaded libccd; with BY_HEADER, that of <ccd/fcl.hpp>, whose
  * states are kept but for random poses. Prints its processor time.
  *
- * usage: fcl_scene CONTACTS USE BODIES FRAMES PAIRS   (CONTACTS: at most so many of a pair, with BY_HEADER) */
+ * usage: fcl_scene CONTACTS USE BODIES FRAMES PAIRS MOST   (CONTACTS: at most so many of a convex pair, with BY_HEADER;
+ * MOST: of a query) */
 
 #include "engines/fcl_shapes.h"
 #include "harness/identity.h"
@@ -39,17 +41,66 @@ struct scene_pair {
 
 static vec random_vector(double size) { return vec(uniform(-size, size), uniform(-size, size), uniform(-size, size)); }
 
-static void make_pair(scene_pair &p, const std::string &use, bool hulls, size_t index)
+/* --- terrain ---------------------------------------------------------------------- */
+
+enum { CELLS = 24 }; /* along each side of a square meter */
+
+/* Writes random heights of the corners of the cells. */
+static std::vector<vec> terrain()
+{
+    std::vector<vec> corners;
+    const double a = uniform(3, 9), b = uniform(3, 9);
+    for (int i = 0; i <= CELLS; i++)
+        for (int k = 0; k <= CELLS; k++) {
+            const double x = (double)i / CELLS - 0.5, y = (double)k / CELLS - 0.5;
+            corners.push_back(vec(x, y, 0.1 * sin(a * x) * cos(b * y) + uniform(-0.01, 0.01)));
+        }
+    return corners;
+}
+
+static geometry terrain_mesh()
+{
+    const std::vector<vec> at = terrain();
+    auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSS<double>>>();
+    mesh->beginModel();
+    for (int i = 0; i < CELLS; i++)
+        for (int k = 0; k < CELLS; k++) {
+            const size_t c = (size_t)(i * (CELLS + 1) + k), right = c + CELLS + 1;
+            mesh->addTriangle(at[c], at[right], at[right + 1]);
+            mesh->addTriangle(at[c], at[right + 1], at[c + 1]);
+        }
+    mesh->endModel();
+    return mesh;
+}
+
+static geometry terrain_octree()
+{
+    auto tree = std::make_shared<octomap::OcTree>(0.03);
+    for (const vec &v : terrain())
+        tree->updateNode(octomap::point3d((float)v[0], (float)v[1], (float)v[2]), true);
+    return std::make_shared<fcl::OcTree<double>>(std::shared_ptr<const octomap::OcTree>(tree));
+}
+
+/* Returns the terrain of a pair, if its body has one; the shape is a box around it. */
+static geometry make_terrain(shape_t *shape, const std::string &bodies, int i)
+{
+    if (bodies == "primitives" || bodies == "hulls" || (i == 1 && bodies != "octree-mesh"))
+        return nullptr;
+    *shape = shape_box(0.5, 0.5, 0.15);
+    return bodies == "mesh" || i == 1 ? terrain_mesh() : terrain_octree();
+}
+
+static void make_pair(scene_pair &p, const std::string &use, const std::string &bodies, size_t index)
 {
     static const int kinds[] = {SHAPE_BOX, SHAPE_CAPSULE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_ELLIPSOID};
     const size_t both = 1 + index % 24; /* 0: two boxes */
     for (int i = 0; i < 2; i++) {
-        geometry made;
-        if (hulls) {
+        geometry made = make_terrain(&p.body[i].shape, bodies, i);
+        if (!made && bodies == "hulls") {
             const auto globe = fcl_globe(11, 16, vec(uniform(0.05, 0.5), uniform(0.05, 0.5), uniform(0.05, 0.5)));
             p.body[i].shape = shape_polytope(globe->getVertices()[0].data(), 160);
             made = globe;
-        } else {
+        } else if (!made) {
             body_random(&p.body[i], kinds[i ? both / 5 : both % 5]);
             made = fcl_geometry(p.body[i].shape, TRIANGLE_HULL);
         }
@@ -106,9 +157,9 @@ static ccd_fcl::Settings settings;
 #endif
 
 /* Not inlined: callgrind counts its instructions. */
-__attribute__((noinline)) static size_t collide(const scene_pair &p, bool contacts)
+__attribute__((noinline)) static size_t collide(const scene_pair &p, bool contacts, size_t most)
 {
-    const fcl::CollisionRequestd request(contacts ? 1000 : 1, contacts, 1, false, true, fcl::GST_LIBCCD, 1e-6);
+    const fcl::CollisionRequestd request(contacts ? most : 1, contacts, 1, false, true, fcl::GST_LIBCCD, 1e-6);
     fcl::CollisionResultd result;
 #ifdef BY_HEADER
     ccd_fcl::collide(p.moved[0].get(), p.moved[1].get(), request, result, cache, settings);
@@ -131,12 +182,13 @@ static void end_frame(bool is_random)
 
 int main(int argc, char **argv)
 {
-    if (argc != 6) {
-        fprintf(stderr, "usage: fcl_scene CONTACTS USE BODIES FRAMES PAIRS\n");
+    if (argc != 7) {
+        fprintf(stderr, "usage: fcl_scene CONTACTS USE BODIES FRAMES PAIRS MOST\n");
         return 2;
     }
     const std::string use = argv[2];
-    const bool hulls = std::string(argv[3]) == "hulls", is_random = use == "random" || use == "yes-no";
+    const size_t most = (size_t)atol(argv[6]);
+    const bool is_random = use == "random" || use == "yes-no";
     std::vector<scene_pair> pairs((size_t)atol(argv[5]));
     double seconds = 0;
     size_t contacts = 0;
@@ -146,13 +198,13 @@ int main(int argc, char **argv)
 #endif
     uniform_seed(14);
     for (size_t i = 0; i < pairs.size(); i++)
-        make_pair(pairs[i], use, hulls, i);
+        make_pair(pairs[i], use, argv[3], i);
     for (long frame = 0; frame < atol(argv[4]); frame++) {
         for (scene_pair &p : pairs)
             place(p, use, frame);
         const double start = thread_seconds();
         for (const scene_pair &p : pairs)
-            contacts += collide(p, use != "yes-no");
+            contacts += collide(p, use != "yes-no", most);
         end_frame(is_random);
         seconds += thread_seconds() - start;
     }

@@ -55,7 +55,7 @@ fn fcl_uses_judged() {
 #[test]
 fn fcl_header_costs_little() {
     let [_, _, header, _] = consumers::fcl_scene();
-    let command = header.command("through primitives 60 200");
+    let command = header.command("through primitives 60 200 1000");
     // Each toggle switches counting at entry and at exit.
     let instructions = |functions: &[&str]| {
         let toggles: Vec<_> = functions.iter().map(|name| format!("--toggle-collect={name}")).collect();

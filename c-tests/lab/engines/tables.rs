@@ -37,13 +37,31 @@ pub const WRONG: &str = "own.missed own.spurious own.broken own.deep own.unsound
 
 // --- FCL by use -----------------------------------------------------------------
 
-/// How FCL is used: its name in `fcl_scene`, what a reader calls it, frames and number of pairs.
-const FCL_USES: [(&str, &str, usize, usize); 4] = [
-    ("yes-no", "yes or no, random poses", 200, 120),
-    ("touching", "contacts of touching bodies", 100, 120),
-    ("through", "contacts of bodies that drift through each other", 150, 120),
-    ("random", "contacts in random poses", 100, 120),
+/// How FCL is used: its name in `fcl_scene`, what a reader calls it, kinds of bodies, frames, number of pairs, and the most
+/// contacts of a query.
+type FclUse = (&'static str, &'static str, &'static [&'static str], usize, usize, usize);
+
+const CONVEX: &[&str] = &["primitives", "hulls"];
+const CONCAVE: &[&str] = &["mesh", "octree", "octree-mesh"];
+
+const FCL_USES: [FclUse; 6] = [
+    ("yes-no", "yes or no, random poses", CONVEX, 200, 120, 1000),
+    ("touching", "contacts of touching bodies", CONVEX, 100, 120, 1000),
+    ("through", "contacts of bodies that drift through each other", CONVEX, 150, 120, 1000),
+    ("random", "contacts in random poses", CONVEX, 100, 120, 1000),
+    ("random", "one contact in random poses", CONCAVE, 50, 60, 1),
+    ("random", "up to 100 contacts in random poses", CONCAVE, 30, 40, 100),
 ];
+
+/// Returns what a reader calls a kind of bodies.
+fn bodies_title(bodies: &str) -> &str {
+    match bodies {
+        "mesh" => "mesh and primitive",
+        "octree" => "octree and primitive",
+        "octree-mesh" => "octree and mesh",
+        bodies => bodies,
+    }
+}
 
 /// FCL's narrow phases in one use and with one kind of bodies.
 pub struct FclCost {
@@ -54,15 +72,15 @@ pub struct FclCost {
     ratios: [f64; 4],
 }
 
-/// Judges each use of FCL with primitives and with hulls in a tenth of the frames, and times it in so many rounds, in which
+/// Judges each use of FCL with every kind of bodies in a tenth of the frames, and times it in so many rounds, in which
 /// the narrow phases take turns.
 pub fn fcl_costs(rounds: usize) -> Vec<FclCost> {
     let judged = compared(program("fcl_scene.cpp"), "1").map(|method| method.first("0"));
     let timed = consumers::fcl_scene();
-    let rows = FCL_USES.iter().flat_map(|row| ["primitives", "hulls"].map(|bodies| (row, bodies)));
-    let cost = |((name, title, frames, count), bodies): (&(&str, &str, usize, usize), &str)| {
-        let judged = run_all(&judged, &format!("{name} {bodies} {} {count}", frames / 10));
-        let arguments = format!("{name} {bodies} {frames} {count}");
+    let rows = FCL_USES.iter().flat_map(|row| row.2.iter().map(move |bodies| (row, *bodies)));
+    let cost = |((name, title, _, frames, count, most), bodies): (&FclUse, &str)| {
+        let judged = run_all(&judged, &format!("{name} {bodies} {} {count} {most}", frames / 10));
+        let arguments = format!("{name} {bodies} {frames} {count} {most}");
         let mut seconds = [const { Vec::new() }; 4];
         for _ in 0..rounds {
             for (method, seconds) in timed.iter().zip(&mut seconds) {
@@ -74,7 +92,7 @@ pub fn fcl_costs(rounds: usize) -> Vec<FclCost> {
             ratios.sort_by(f64::total_cmp);
             ratios.get(rounds / 2).copied().unwrap_or(f64::NAN)
         });
-        FclCost { row: format!("{title} | {bodies}"), judged, ratios }
+        FclCost { row: format!("{title} | {}", bodies_title(bodies)), judged, ratios }
     };
     rows.map(cost).collect()
 }

@@ -401,3 +401,42 @@ run_programs! {
     exceptions_out_of_callbacks: on_this_library("exceptions").in_cpp(), [harness::rounds(20)];
     exceptions_out_of_callbacks_of_the_archive: on_this_library("exceptions").in_cpp().link(Link::Static), [harness::rounds(20)];
 }
+
+/// Compares the types of `src/ffi` with what bindgen reads: libccd's of the installed header, the others of `warm.h`.
+#[cfg(not(feature = "single"))]
+#[test]
+fn types_are_laid_out_as_in_the_headers() {
+    use std::mem::{align_of, offset_of, size_of};
+
+    use ccd::internals::ffi as ours;
+    use warmccd_bindings::{libccd, warmccd};
+    macro_rules! same {
+        ($($header:ident::$name:ident { $($field:ident),* })*) => { $(
+            assert_eq!(size_of::<ours::$name>(), size_of::<$header::$name>(), stringify!($name));
+            assert_eq!(align_of::<ours::$name>(), align_of::<$header::$name>(), stringify!($name));
+            // Every field of the header's type, or this pattern does not compile.
+            let _ = |x: $header::$name| { let $header::$name { $($field: _),* } = x; };
+            $(assert_eq!(
+                offset_of!(ours::$name, $field),
+                offset_of!($header::$name, $field),
+                concat!(stringify!($name), ".", stringify!($field)),
+            );)*
+        )* };
+    }
+    same! {
+        libccd::ccd_vec3_t { v }
+        libccd::ccd_t {
+            first_dir, support1, support2, center1, center2, max_iterations, epa_tolerance, mpr_tolerance, dist_tolerance
+        }
+        warmccd::ccd_warm_t { reals, words }
+        warmccd::ccd_penetration_t {
+            depth, depth_lower, dir, normal, pos, point1, point2, support_points, iterations, status
+        }
+        warmccd::ccd_distance_t {
+            distance, distance_upper, normal, point1, point2, support_points, iterations, status
+        }
+        warmccd::ccd_manifold_cache_t { reals, words, checksum }
+        warmccd::ccd_contact_t { point1, point2, depth, id }
+        warmccd::ccd_check_t { size, noise, change, center_outside, dir }
+    }
+}
