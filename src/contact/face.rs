@@ -18,8 +18,9 @@
 //!    Known failure (1e-5 of faces): tilted faces of which only an edge and one more corner are within the slop.
 //!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
 //! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are queried with half the tilt: on
-//!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it.
-//!    Displacements greater than sqrt(slop · size / 2) are not treated as rounding of a corner.
+//!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it, if
+//!    p(3t/4) is midway between p(t/2) and p(t). Displacements greater than sqrt(slop · size / 2) are not treated as
+//!    rounding of a corner.
 //! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. If their vertices
 //!    moved as one rigid body, so did the corners; else the face is searched anew.
 //!
@@ -28,7 +29,9 @@
 
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache, Motion};
-use crate::contact::tuning::{MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_SLOPS};
+use crate::contact::tuning::{
+    MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_REL, ROUND_CORNER_SLOPS,
+};
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
@@ -308,8 +311,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     /// Finds the corner beyond the side from sample `i` to the next; None if there is none.
     fn find_corner_beyond_side(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
         // A corner costs up to two queries, and each unknown core one.
-        let pending = self.face.samples.iter().filter(|s| !s.has_core).count() as u32;
-        let is_last = self.query_count + 2 + pending > MAX_QUERIES;
+        let is_last = self.query_count + 2 + self.unknown_cores() > MAX_QUERIES;
         if self.face.samples.len() == MAX_CORNERS || is_last {
             return Ok(None);
         }
@@ -362,7 +364,8 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             let near = self.query(full.tilt * 0.5)?;
             let moved = offset(&near.found, &full.found).norm();
             let max_moved = self.face.slop / self.face.tilt_tan.sqrt();
-            if !self.is_same(&full, &near) && moved <= max_moved {
+            let may_be_round = !self.is_same(&full, &near) && moved <= max_moved;
+            if may_be_round && self.is_round_between(&near, &full)? {
                 full.radius = moved / (full.tilt - near.tilt).norm();
                 full.corner = near.found * 2.0 - full.found;
                 full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
@@ -374,6 +377,29 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             ..full
         };
         Ok(())
+    }
+
+    /// Returns whether two samples, at a tilt and at half of it, are of one rounded corner, not two sharp ones: their drops
+    /// are as p(t) has them, and the vertex between them is midway, unless the query for it is needed for another core.
+    fn is_round_between(&mut self, near: &FaceSample, full: &FaceSample) -> Result<bool, Fault> {
+        let moved = offset(&near.found, &full.found);
+        // c + R t has the drop R t²/2 below c.
+        let drop = 0.75 * moved.dot(&full.tilt);
+        let off = (full.found.z - near.found.z - drop).abs();
+        if off > ROUND_CORNER_REL * drop + self.face.coord_eps {
+            return Ok(false);
+        }
+        if self.query_count + self.unknown_cores() >= MAX_QUERIES {
+            return Ok(true);
+        }
+        let middle = self.query((near.tilt + full.tilt) * 0.5)?;
+        let off = offset(&((near.found + full.found) * 0.5), &middle.found).norm();
+        Ok(off <= ROUND_CORNER_REL * moved.norm() + self.face.coord_eps)
+    }
+
+    /// Returns the number of samples whose core is not known, each of which costs a query.
+    fn unknown_cores(&self) -> u32 {
+        self.face.samples.iter().filter(|s| !s.has_core).count() as u32
     }
 
     /// Returns the sample of the rounded corner to which another sample belongs.

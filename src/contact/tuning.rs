@@ -59,6 +59,9 @@ pub const MIN_SLOP_REL: f64 = 0.01;
 pub const MIN_SLOP_ROUNDINGS: f64 = 4.0;
 /// Distance, in slops, below which samples may be of one rounded corner. The samples of a ball are 8 slops apart.
 pub const ROUND_CORNER_SLOPS: f64 = 16.0;
+/// Largest distance of the vertex at three quarters of a tilt from the middle of those at the whole and at half of it, on a
+/// rounded corner, relative to their distance: 0 on a ball, 0.5 where it is one of two sharp corners.
+pub const ROUND_CORNER_REL: f64 = 0.125;
 /// Lean of the outward direction of a cached side towards its second corner: 3.6°, by which the face may rotate about the
 /// normal. Insensitive: 1/64 to 1/8 tried.
 pub const CACHED_LEAN: f64 = 1.0 / 16.0;

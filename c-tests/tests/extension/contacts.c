@@ -268,6 +268,20 @@ static shape_t block(int which, double slop)
     return kind == 0 ? shape_box(x, y, z) : kind == 1 && slop > 1e4 * real_eps() ? boat(which, slop * uniform(1.3, 1.8)) : frustum(which, 3 + random_below(6), z, 0);
 }
 
+/* Returns a hull whose lower face is uneven by 0.1 to 10 slops: bevels, scanned meshes. */
+static shape_t uneven(int which, double slop)
+{
+    const double rise = slop * pow(10, uniform(-1, 1)), width = pow(10, uniform(-1, 0));
+    ccd_real_t *v = hull_verts[which];
+    for (int i = 0; i < 20; i++, v += 3) {
+        const double angle = uniform(0, 2 * pi), r = i < 16 ? sqrt(uniform(0, 1)) : 1;
+        v[0] = (ccd_real_t)(r * cos(angle));
+        v[1] = (ccd_real_t)(width * r * sin(angle));
+        v[2] = (ccd_real_t)(i < 16 ? rise * (r * r + uniform(0, 0.2)) - 0.4 : 0.4);
+    }
+    return shape_polytope(hull_verts[which], 20);
+}
+
 /* Pose of the scene in the world. */
 static double scene_rot[9], scene_at[3];
 
@@ -294,6 +308,23 @@ static void place_randomly(scene_t *s, double distance)
 }
 
 static double random_slop(void) { return random_below(5) == 0 ? 0 : pow(10, uniform(single ? -5 : -9, -2.5)); }
+
+/* Uneven hulls on a table and on each other: no point is outside its body by more than the slop. */
+static void uneven_faces(void)
+{
+    for (int i = 0; i < 20000 / share; i++) {
+        const double slop = pow(10, uniform(single ? -4 : -6, -2));
+        const shape_t b = uneven(1, slop);
+        scene_t s = {.slop = slop, .b = above(b, uniform(-1, 1), uniform(-1, 1), -uniform(0, 10) * slop), .a = table()};
+        if (i % 2) {
+            const shape_t a = turned(uneven(0, slop), 1, 0, 0, pi);
+            s.a = at(a, 0, 0, -support_height(&a, up, 1));
+        }
+        place_randomly(&s, 1);
+        const contacts_t c = contacts_of(&s);
+        check_contacts(&s, &c, 1, "uneven");
+    }
+}
 
 /* Blocks that rest on each other, level or tilted, within the slop or more. */
 static void resting_blocks(void)
@@ -699,6 +730,7 @@ int main(int argc, char **argv)
     categories();
     arbitrary_caches();
     motions();
+    uneven_faces();
     for (int i = 0; i < 4; i++)
         CHECK(seen[i] > (i % 3 ? 10U : 300U) / (unsigned)share, "too few of a kind: %lu", seen[i]);
     return checks_end();
