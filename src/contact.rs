@@ -6,7 +6,7 @@
 //! | file | contents |
 //! |---|---|
 //! | [`frame`] | the frame of a contact |
-//! | [`feature`] | the vertices of an object around its deepest point: [`polygon_search`], [`curved`], in a [`fan`] |
+//! | [`feature`], [`polygon_search`], [`fan`] | the polygon of an object in a contact: queries, search, vertices around the deepest point |
 //! | [`tuning`] | the constants of these |
 //! | [`center_of_pressure`] | the contact position |
 //! | [`face`] | the face of an object in a contact |
@@ -18,7 +18,6 @@
 //! contacts fail (0).
 
 pub mod center_of_pressure;
-pub mod curved;
 pub mod face;
 pub mod fan;
 pub mod feature;

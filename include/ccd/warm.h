@@ -166,8 +166,8 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Requests pos. Costs 1 to 3 support points on average, k for a face of k > 4 corners, of both
- * objects where neither's face contains the other's; at most 20. May call one support function
+ * Requests pos. Costs 2 to 6 support points on average, k + 1 for a face of k > 4 corners, of both
+ * objects where neither's face contains the other's; at most 24. May call one support function
  * without the other.
  */
 #define CCD_WANT_POS 1

@@ -3,10 +3,11 @@
 
 //! The vertices of a feature, in order around the deepest point.
 
-use crate::contact::polygon_search::MAX_CORNERS;
-use crate::contact::tuning::DROP_TOL;
-use crate::geometry::polygon::Vec2;
-use crate::math::{Vec3, ZERO, larger};
+use crate::contact::feature::four_directions;
+use crate::contact::polygon_search::{Corners, MAX_CORNERS, in_overlap, volume_of};
+use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL};
+use crate::geometry::polygon::{Vec2, offset};
+use crate::math::{Vec3, ZERO, larger, lesser};
 
 /// Returns twice the area of the triangle of the deepest point and two vertices, positive if counterclockwise.
 #[inline(always)]
@@ -26,20 +27,54 @@ pub struct Fan {
     /// `vertices[len]` repeats the first one.
     pub vertices: [Vec3; Fan::CAPACITY],
     pub len: usize,
-    /// True if opposite vertices are symmetric about the deepest point.
-    pub is_symmetric: bool,
 }
 
 impl Fan {
-    /// Largest number of vertices: eight of a disc or a polygon, two that enclose the deepest point, and the
-    /// repeated first one.
-    pub const CAPACITY: usize = MAX_CORNERS + 3;
+    /// Largest number of vertices: those of a polygon, one that encloses the deepest point, and the repeated first one.
+    pub const CAPACITY: usize = MAX_CORNERS + 2;
     /// The fan without vertices.
     pub const EMPTY: Self = Self {
         vertices: [ZERO; Self::CAPACITY],
         len: 0,
-        is_symmetric: false,
     };
+
+    /// Makes the fan of a polygon: each corner moved outwards by `distance` and raised by the drop that all have in common.
+    /// An edge has its ends also to both sides, a point has four vertices.
+    #[inline(always)]
+    pub fn new(corners: &Corners, distance: f64) -> Self {
+        let mut fan = Self::EMPTY;
+        let least = corners.iter().fold(1.0, |least, c| lesser(c.at.z, least));
+        let common = COMMON_DROP_FACTOR * least;
+        match &**corners {
+            [a] => {
+                for out in four_directions(Vec2::x()) {
+                    fan.push(moved(&a.at, out, distance, common));
+                }
+            }
+            [a, b] => {
+                let along = offset(&a.at, &b.at);
+                let out = four_directions(along * (1.0 / along.norm()));
+                for (v, k) in [(a, 2), (a, 3), (b, 0), (b, 1)] {
+                    fan.push(moved(&v.at, out[k], distance, common));
+                }
+            }
+            _ => {
+                let mean = corners.iter().map(|c| c.at).sum::<Vec3>() / corners.len() as f64;
+                for v in corners.iter() {
+                    let out = offset(&mean, &v.at);
+                    let norm2 = larger(out.norm_squared(), f64::MIN_POSITIVE);
+                    fan.push(moved(&v.at, out, distance / norm2.sqrt(), common));
+                }
+            }
+        }
+        fan.remove_steep();
+        fan
+    }
+
+    /// Returns the vertices.
+    pub fn outline(&self) -> &[Vec3] {
+        self.vertices.get(..self.len).unwrap_or(&[])
+    }
 
     /// Appends a vertex; a full fan ignores it.
     #[inline(always)]
@@ -119,9 +154,27 @@ impl Fan {
             self.len = n + 1;
             self.vertices[n + 1] = self.vertices[0];
         }
+        self.remove(Self::is_dent);
+        self.len > 2
+    }
+
+    /// Removes vertices on surfaces beside the face, with which less volume is in the overlap. (The drop of a convex surface is
+    /// not greater than any interpolation, so the one with more volume is closer.)
+    #[inline(always)]
+    fn remove_steep(&mut self) {
+        if self.outline().iter().any(|v| v.z > 1.0) {
+            self.remove(Self::is_steep);
+        }
+    }
+
+    /// Removes vertices while more than two are left. Repeats the first one.
+    #[cold]
+    #[inline(never)]
+    fn remove(&mut self, is_wrong: impl Fn(&Self, usize) -> bool) {
+        self.vertices[self.len.min(Self::CAPACITY - 1)] = self.vertices[0];
         let mut i = 0;
         while i < self.len && self.len > 2 {
-            if self.is_dent(i) {
+            if is_wrong(self, i) {
                 for k in 1..Self::CAPACITY {
                     if k > i {
                         self.vertices[k - 1] = self.vertices[k];
@@ -134,7 +187,14 @@ impl Fan {
                 i += 1;
             }
         }
-        self.len > 2
+    }
+
+    /// Returns whether the overlap has more volume without a vertex below it.
+    fn is_steep(&self, i: usize) -> bool {
+        let [p, _] = self.side(if i > 0 { i - 1 } else { self.len - 1 });
+        let [v, q] = self.side(i);
+        let [p, at, q] = [p, v, q].map(|v| in_overlap(v, 0.0));
+        v.z > 1.0 && volume_of(&p, &at) + volume_of(&at, &q) < volume_of(&p, &q)
     }
 
     /// Returns the ends of side `i`, below the length.

@@ -1,37 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The tuned constants of the contact position and the contact manifold, with what was tried. Extent: the largest distance of
-//! an object's known vertices and center from the contact. "Off the object": of a million hits of the test `pos.c`.
+//! The tuned constants of the contact position and the contact manifold, with what was tried. Extent: the distance of
+//! an object's center from the contact.
 
 /// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
-/// a drop of 1.6 depths at that tilt (R T²/2), and all corners are found of a face whose drop grows by a depth
-/// over its width. Measured: with the factor divided by 1.2 a corner of a leaning box is missed; multiplied by
-/// 1.2 the position of a cone on its side jumps by 7 mm.
-pub const TILT_FACTOR: f64 = 1.8;
+/// a drop of one depth at that tilt (R T²/2), and all corners are found of a face whose drop grows by 0.7 depths over its
+/// width. Measured: with 1.8 the position of a rolling cylinder jumps by 7 mm and the error of rounded boxes is 1.5 mm in
+/// place of 0.9 mm.
+pub const TILT_FACTOR: f64 = 1.4;
 /// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 52; the first directions of a face have it, and
 /// the sine between segments that count as parallel is less. With a larger one surfaces beside a face are taken for it; a
 /// smaller one underestimates the size of curved objects.
 pub const MAX_TILT_TAN: f64 = 0.25;
-/// Least tilt of an evaluated direction that replaces the query of a corner or an edge, relative to T. Measured: root
-/// mean square error of 7.5 mm with 0.4, 1.8 mm with 0.6.
-pub const MIN_COVER: f64 = 0.6;
-/// Number of most recent known vertices used. Measured: with 8 a hit takes 0.8 % fewer instructions and 0.1 % more support
-/// points, and a position of nearly parallel frusta (`judged hard`) is outside.
+/// Largest estimated shift of the centroid by a corner that is not searched, relative to the extent. Real shifts are a third
+/// of the estimate, and those of opposite sides cancel. Measured: with 0.012 a recorded hit takes 0.2 support points more and
+/// a cone jumps in 7 steps of 1,000; with 0.018 it takes 0.1 less, and corners of faces of 9 are missed.
+pub const CORNER_SHIFT_REL: f64 = 0.015;
+/// Number of most recent known vertices that may prove a plane.
 pub const MAX_KNOWN: usize = 16;
-/// Largest distance of a vertex from the mirror plane, relative to T times the extent: the radius of curvature is at
-/// most 1.1 times the extent. Also the largest height lost by the drop, relative to the distance: 0.7 on a sphere. Corners
-/// of faces are farther away. Measured: with 1, 2 positions are off the object, with 0.5 a hit takes 0.2 support points more.
-pub const MAX_CURVED_REL: f64 = 0.8;
-/// Least height that such a vertex has lost by its drop, relative to that distance: 0.35 on a sphere, 0 on a face. Measured:
-/// with 0, 7 positions are off the object, by up to 7.5 mm.
-pub const MIN_CURVED_DROP: f64 = 0.3;
-/// Largest size, relative to the extent, that counts as none: of a feature that is a point, a side beyond which no corner is
-/// searched, a gap between symmetric points or in a parallelogram, a distance from a disc's rim. The position is within a
-/// quarter of it. Insensitive: 0.004 to 0.016 tried.
+/// Largest size of a polygon that counts as a point, relative to the extent. The position is within a quarter of it.
+/// Insensitive: 0.004 to 0.016 tried.
 pub const POINT_REL: f64 = 0.008;
-/// Largest drop, and difference of drops, that count as none, in depths: an error of a third of this fraction of the half
-/// width. Insensitive: 0.01 to 0.1 tried.
+/// Largest drop that counts as none, in depths: an error of a third of this fraction of the half width. Insensitive: 0.01 to
+/// 0.1 tried.
 pub const DROP_TOL: f64 = 0.05;
 /// Fraction of the smallest drop of all vertices of a curved surface that is subtracted from each: with radius R the drop is
 /// R T²/2 all around. Measured: with 0 the position of a lying capsule jumps by 5 mm; with 1, exact for spheres, its error

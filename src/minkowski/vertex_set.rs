@@ -161,12 +161,6 @@ impl<const N: usize> VertexSet<N> {
         self.coords.each_ref().map(|coords| coords[i])
     }
 
-    /// Returns the directions of the entries from index `first` on.
-    #[inline(always)]
-    pub fn dirs_from(&self, first: usize) -> &[Vec3] {
-        self.dirs.get(first..self.len).unwrap_or(&[])
-    }
-
     /// Returns the coordinates of the entries from index `first` on, like [`VertexSet::coords`].
     #[inline(always)]
     pub fn coords_from(&self, first: usize) -> impl Iterator<Item = [[f64; 2]; 3]> + '_ {

@@ -26,6 +26,7 @@ run_programs! {
     results_from_every_kind_of_state: program("tests/extension/warm_states.c").strict(), [harness::rounds(400)];
     pos_is_the_center_of_pressure: program("tests/extension/pos.c").strict(), ["pressure", &one_in(8)];
     pos_is_near_both_objects: program("tests/extension/pos.c").strict(), ["near", "100"];
+    pos_is_exact_on_rounded_bodies: program("tests/extension/pos.c").strict(), ["rounded", "400"];
     pos_does_not_jump: program("tests/extension/pos.c").strict(), ["jumps", &harness::rounds(10000)];
     contacts_are_exact: program("tests/extension/contacts.c").strict(), [one_in(10)];
 }

@@ -8,6 +8,8 @@
  *   pos jumps N SEED  Bodies of a quarter metre at rest on others move along the contact, in N steps: how often pos jumps where
  *                     the exact one does not; how far those of a cold query, a warm one and the swapped pair are apart; the
  *                     error; the support points. And two capsules.
+ *   pos rounded N     Boxes, prisms and frusta with edges rounded by 0 to 64 mm, flat on sharp and rounded floors, where it is
+ *                     exact by symmetry, in N poses each; and turning, warm.
  *   pos pressure [N]  It is that by integration: bodies of a quarter metre that tilt, tip and roll on a floor, 1 mm and 0.01 mm
  *                     deep, in steps so small that a discontinuity shows; random pairs at depths of 1 to 30 % of the smaller
  *                     body's radius. One sweep and depth in N. */
@@ -435,7 +437,9 @@ static void check_jumps(int steps, int seed)
             }
             printf(" %7.3f %7.3f %5.2f %3.0f\n", 1e3 * rms(&error), 1e3 * error.worst, cost.sum / cost.count, cost.worst);
             /* Means as <ccd/warm.h> says, of many poses; in single precision the depths are larger, and so are the tilts. */
-            const double corners = (k > 4 && k < BODY_CAPSULE ? k : 3) + 0.5 * single, mean = cost.sum / cost.count;
+            const int is_disc = k == BODY_CYLINDER || k == BODY_CONE;
+            const double corners = (is_disc ? 8 : k > 4 && k < BODY_CAPSULE ? k + 1 : 5) + 0.5 * single;
+            const double mean = cost.sum / cost.count;
             CHECK((cost.count < 100 || mean <= (m ? 12 + single : corners)) && cost.worst <= 20,
                   "%s %s: %.2f support points, at most %.0f", body_name[k], RESTS[m].name, mean, cost.worst);
             /* And of faces of 3 to 10 corners on a floor. */
@@ -646,11 +650,104 @@ static void check_pressure(int every, int seed)
             check_sweep(&all[i], d ? 1e-5 : 1e-3);
 }
 
+/* --- rounded bodies --------------------------------------------------------------------------- */
+
+/* A body with a ball of radius `margin` added all around, as Bullet's margins. */
+typedef struct {
+    shape_t core;
+    double margin;
+} rounded_t;
+
+static void rounded_support(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *out)
+{
+    const rounded_t *body = (const rounded_t *)obj;
+    shape_support(&body->core, dir, out);
+    for (int i = 0; i < 3; i++)
+        out->v[i] += (ccd_real_t)body->margin * dir->v[i];
+}
+
+static void rounded_center(const void *obj, ccd_vec3_t *out) { shape_center(&((const rounded_t *)obj)->core, out); }
+
+static int find_rounded(const rounded_t *a, const rounded_t *b, ccd_warm_t *warm, double pos[3])
+{
+    ccd_penetration_t p;
+    ccd_t ccd = settings(1e-6);
+    ccd.support1 = ccd.support2 = rounded_support;
+    ccd.center1 = ccd.center2 = rounded_center;
+    const int code = OURS(ccdPenetration)(a, b, &ccd, warm, CCD_WANT_POS, &p);
+    copy(&p.pos, pos);
+    return code == CCD_HIT;
+}
+
+/* Makes a box, a prism with a regular base or a frustum on the plane z = `z`: by symmetry its center of pressure is on its axis. */
+static rounded_t symmetric_body(int kind, double margin, double z, ccd_real_t verts[6 * CORNERS])
+{
+    rounded_t body = {shape_box(uniform(0.04, 0.12), uniform(0.04, 0.12), uniform(0.04, 0.12)), margin};
+    const double half = kind ? uniform(0.04, 0.12) : (double)body.core.p[2], top = uniform(0.5, 1.2);
+    for (int i = 0; kind && i < 2 * kind; i++) {
+        /* With the rounding of vertices read from a file. */
+        const double angle = 2 * pi * (i / 2) / kind, r = 0.1 * (i % 2 ? top : 1);
+        verts[3 * i] = (ccd_real_t)(r * cos(angle) + uniform(-1e-7, 1e-7));
+        verts[3 * i + 1] = (ccd_real_t)(r * sin(angle) + uniform(-1e-7, 1e-7));
+        verts[3 * i + 2] = (ccd_real_t)((i % 2 ? half : -half) + uniform(-1e-7, 1e-7));
+    }
+    if (kind)
+        body.core = shape_polytope(verts, 2 * kind);
+    shape_move(&body.core, 0, 0, z + half + margin);
+    return body;
+}
+
+/* Checks bodies that lie flat on a floor or on a larger box, sharp and rounded, in any direction of the world. */
+static void check_rounded(int poses, int seed)
+{
+    static const double margins[] = {0, 1e-3, 4e-3, 16e-3, 64e-3}, lower[] = {0, 20e-3};
+    static const int kinds[] = {0, 3, 5, 8, CORNERS};
+    uniform_seed((uint64_t)seed);
+    for (int m = 0; m < 5; m++)
+        for (int f = 0; f < 2; f++) {
+            errors_t error = {0}, warm_error = {0};
+            for (int k = 0; k < poses; k++) {
+                ccd_real_t verts[6 * CORNERS];
+                const double depth = exp(uniform(log(single ? 1e-3 : 1e-4), log(1e-3)));
+                rounded_t floor = {shape_box(1, 1, 0.1), lower[f]}, body = symmetric_body(kinds[k % 5], margins[m], -depth, verts);
+                double q[4], world[9], yaw[9], pos[3], axis[3];
+                ccd_warm_t warm;
+                memset(&warm, 0, sizeof warm);
+                shape_move(&floor.core, uniform(-0.5, 0.5), uniform(-0.5, 0.5), -0.1 - lower[f]);
+                rotation_about(0, 0, 1, uniform(-pi, pi), yaw);
+                shape_turn_by(&body.core, yaw, 0, 0, 0);
+                uniform_rotation(q);
+                rotation_quaternion(q[0], q[1], q[2], q[3], world);
+                shape_turn_by(&floor.core, world, 0, 0, 0);
+                shape_turn_by(&body.core, world, 0, 0, 0);
+                CHECK(find_rounded(&floor, &body, NULL, pos), "rounded bodies overlap");
+                for (int i = 0; i < 3; i++)
+                    axis[i] = (double)body.core.pos[i];
+                const double n[3] = {world[2], world[5], world[8]};
+                project(n, axis, pos);
+                add_error(&error, distance(axis, pos));
+                /* Turns by 1e-4 rad a step. */
+                rotation_about(n[0], n[1], n[2], 1e-4, yaw);
+                for (int step = 0; step < 4; step++) {
+                    const double x = (double)body.core.pos[0], y = (double)body.core.pos[1], z = (double)body.core.pos[2];
+                    shape_move(&body.core, 0, 0, 0);
+                    shape_turn_by(&body.core, yaw, x, y, z);
+                    CHECK(find_rounded(&floor, &body, &warm, pos), "rounded bodies overlap");
+                    project(n, axis, pos);
+                    add_error(&warm_error, distance(axis, pos));
+                }
+            }
+            printf("margin %2.0f mm on a %s floor: rms %.3f mm, worst %.3f; warm, turning %.3f, %.3f\n", 1e3 * margins[m],
+                   f ? "rounded" : "sharp", 1e3 * rms(&error), 1e3 * error.worst, 1e3 * rms(&warm_error), 1e3 * warm_error.worst);
+            CHECK(fmax(rms(&error), rms(&warm_error)) < 1.5e-3 && fmax(error.worst, warm_error.worst) < 4.5e-3, "margin %g", margins[m]);
+        }
+}
+
 int main(int argc, char **argv)
 {
     static const struct { const char *name; void (*check)(int count, int seed); } parts[] = {
-        {"near", check_near}, {"jumps", check_jumps}, {"pressure", check_pressure}};
-    for (int i = 0; i < 3; i++)
+        {"near", check_near}, {"jumps", check_jumps}, {"pressure", check_pressure}, {"rounded", check_rounded}};
+    for (int i = 0; i < 4; i++)
         if (argc > 1 && strcmp(argv[1], parts[i].name) == 0)
             parts[i].check(argc > 2 ? atoi(argv[2]) : 1, argc > 3 ? atoi(argv[3]) : 1);
     return checks_end();

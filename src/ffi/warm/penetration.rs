@@ -13,8 +13,8 @@ use crate::math::{Real, lower_to_real};
 use crate::query::Solver;
 use crate::types::Penetration;
 
-/// Requests pos. Costs 1 to 3 support points on average, k for a face of k > 4 corners, of both
-/// objects where neither's face contains the other's; at most 20. May call one support function
+/// Requests pos. Costs 2 to 6 support points on average, k + 1 for a face of k > 4 corners, of both
+/// objects where neither's face contains the other's; at most 24. May call one support function
 /// without the other.
 pub const CCD_WANT_POS: c_uint = 1;
 /// Requests point1 and point2, at no cost.
