@@ -32,6 +32,7 @@ pub struct Callbacks {
     pub calls: unsafe extern "C-unwind" fn(*const c_void) -> c_ulong,
     pub scene: unsafe extern "C-unwind" fn(*const c_char, *mut *mut Pair) -> usize,
     pub random: unsafe extern "C-unwind" fn(c_int, c_int, usize, *mut *mut Pair) -> usize,
+    pub sliding: unsafe extern "C-unwind" fn(usize, *mut *mut Pair) -> usize,
     pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
     pub end: unsafe extern "C-unwind" fn(),
 }
@@ -114,6 +115,7 @@ impl Libraries {
                 calls: function(object, "bench_calls"),
                 scene: function(object, "bench_scene"),
                 random: function(object, "bench_random"),
+                sliding: function(object, "bench_sliding"),
                 counted: function(object, "bench_counted"),
                 end: function(object, "bench_end"),
             }

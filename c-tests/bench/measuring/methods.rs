@@ -24,8 +24,8 @@ pub enum Interface {
     YesNoWarm,
     /// Depth, direction, position, which may be NULL.
     Depth { has_pos: bool },
-    /// Warm state, depth, direction, position.
-    DepthWarm,
+    /// Warm state, depth, direction, position, which may be NULL.
+    DepthWarm { has_pos: bool },
     /// Warm state, wanted outputs, result.
     Full,
     /// The distance of pairs that overlap; of others the search ends as soon as they are known to be apart.
@@ -66,14 +66,14 @@ const fn entry(name: &'static str, interface: Interface) -> Entry {
 }
 
 /// Every method.
-const METHODS: [Entry; 20] = [
+const METHODS: [Entry; 21] = [
     entry("libccd ccdMPRPenetration", Interface::Depth { has_pos: true }),
     entry("libccd ccdGJKPenetration", Interface::Depth { has_pos: true }),
     entry("libccd ccdMPRIntersect", Interface::YesNo),
     entry("ccdMPRPenetration", Interface::Depth { has_pos: false }),
     entry("ccdMPRPenetration, pos", Interface::Depth { has_pos: true }),
     entry("ccdGJKPenetration", Interface::Depth { has_pos: false }),
-    entry("ccdMPRPenetrationWarm", Interface::DepthWarm),
+    entry("ccdMPRPenetrationWarm", Interface::DepthWarm { has_pos: false }),
     entry("ccdIntersect", Interface::YesNoWarm),
     entry("ccdSignedDistance", Interface::Distance),
     entry("ccdPenetration", Interface::Full),
@@ -87,6 +87,7 @@ const METHODS: [Entry; 20] = [
     entry("MuJoCo 3 ccd", Interface::Peer),
     entry("Coal 3 EPA", Interface::Peer),
     entry("Jolt 5 EPA", Interface::Peer),
+    entry("ccdMPRPenetrationWarm, pos", Interface::DepthWarm { has_pos: true }),
 ];
 
 /// Start of a search; in files the degrees by which a guess is off the true direction, `cold` or `warm`.
@@ -212,10 +213,11 @@ fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
                 Box::new(move |pair, ccd, warm, _| f(pair.a, pair.b, ccd, warm) - 1)
             }
             Interface::Depth { has_pos } => depth_call(function(library, symbol), has_pos),
-            Interface::DepthWarm => {
+            Interface::DepthWarm { has_pos } => {
                 let f: DepthWarm = function(library, symbol);
                 Box::new(move |pair, ccd, warm, out| {
-                    f(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, null_mut())
+                    let pos = if has_pos { &raw mut out.pos } else { null_mut() };
+                    f(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, pos)
                 })
             }
             Interface::Full => {

@@ -30,7 +30,7 @@ type Drawn = Result<(), Box<dyn std::error::Error>>;
 /// Returns the line of a row's curve: a hue for each method, thick for this library's.
 fn line(row: &Row) -> ShapeStyle {
     let number = Entry::number(&row.method);
-    // With this step any two of the 20 methods with the same lightness are a tenth of the circle apart.
+    // With this step any two of the first 20 methods with the same lightness are a tenth of the circle apart.
     let (hue, lightness) = ((number as f64 * 0.15).fract(), [0.3, 0.45][number % 2]);
     HSLColor(hue, 0.8, lightness).stroke_width(if row.ours { 3 } else { 1 })
 }
