@@ -15,7 +15,8 @@
 //! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, where a support point replaces a center near the
 //!    origin; if the polytope does not come to contain the origin, or rounding ends it, from two
 //!    tetrahedra of GJK. Full buffers are replaced by larger ones.
-//! 6. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
+//! 6. *Direction*: up to four more directions where the bounds differ by more than the tolerance ([`crate::epa::direction`]).
+//! 7. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
 //! Departures. Steps 3 to 5 take known differences before callbacks. If a known difference is beyond the plane of the
 //! result, a callback has contradicted itself; if the difference of the centers is beyond an evaluated plane, a center

@@ -83,10 +83,8 @@ static size_t read_recording(const recording_t *r, bench_pose_t *pose)
 
 /* --- random pairs by kind and depth ----------------------------------------- */
 
-enum { BOXES, HULLS, CAPSULES, CYLINDERS_AND_CONES, ELLIPSOIDS };
+enum { BOXES, HULLS, CAPSULES, CYLINDERS_AND_CONES, ELLIPSOIDS, HULLS_42, HULLS_642, HULLS_AND_CAPSULES };
 enum { SHALLOW, MEDIUM, DEEP, NEAR, FAR };
-
-enum { HULL_CORNERS = 100 };
 
 /* Makes a shape of 5 to 50 cm with aspect ratios up to 3, turned at random. */
 static shape_t random_shape(rng_t *r, int kind)
@@ -95,10 +93,12 @@ static shape_t random_shape(rng_t *r, int kind)
     shape_t s;
     for (int k = 0; k < 3; k++)
         p[k] = size * rng_uniform(r, .33, 1);
-    if (kind == HULLS) {
-        ccd_real_t *verts = (ccd_real_t *)malloc(sizeof *verts * 3 * HULL_CORNERS);
-        rng_on_ellipsoid(r, verts, HULL_CORNERS, p);
-        s = shape_polytope(verts, HULL_CORNERS);
+    const int corners[] = {0, 100, 0, 0, 0, 42, 642, 162};
+    const int n = corners[kind];
+    if (n > 0) {
+        ccd_real_t *verts = (ccd_real_t *)malloc(sizeof *verts * 3 * (size_t)n);
+        rng_on_ellipsoid(r, verts, n, p);
+        s = shape_polytope(verts, n);
     } else {
         const int round = rng_below(r, 2) ? SHAPE_CYLINDER : SHAPE_CONE;
         const int type[] = {SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CAPSULE, round, SHAPE_ELLIPSOID};
@@ -136,7 +136,7 @@ size_t bench_random(int kind, int depth, size_t n, bench_pose_t **poses)
         rng_t r = rng((uint64_t)kind, i);
         double u[3], least;
         *pose->a = random_shape(&r, kind);
-        *pose->b = random_shape(&r, kind);
+        *pose->b = random_shape(&r, kind == HULLS_AND_CAPSULES ? CAPSULES : kind);
         least = fmin(shape_reach(pose->a), shape_reach(pose->b));
         rng_unit_vector(&r, u);
         pose->motion = i;
@@ -215,6 +215,33 @@ double bench_truth(const shape_t *a, const shape_t *b, double width, double n[3]
     memcpy(n, t.n, sizeof t.n);
     *gap = t.depth - t.lower;
     return t.depth;
+}
+
+/* Makes n motions of two frames: a box that lies 1 mm deep on a larger one slides by 1 cm. */
+size_t bench_sliding(size_t n, bench_pose_t **poses)
+{
+    enum { FRAMES = 2 };
+    bench_pose_t *pose = *poses = new_poses(FRAMES * n);
+    for (size_t i = 0; pose && i < n; i++) {
+        rng_t r = rng(100, i);
+        const double height = rng_uniform(&r, .1, .3), x = rng_uniform(&r, -.3, .3), y = rng_uniform(&r, -.3, .3);
+        shape_t floor = shape_box(1, 1, .2), box = shape_box(rng_uniform(&r, .1, .3), rng_uniform(&r, .1, .3), height);
+        double frame[9], yaw[9];
+        rng_rotation(&r, frame);
+        rotation_about(0, 0, 1, rng_uniform(&r, 0, 6), yaw);
+        shape_turn(&box, yaw);
+        for (size_t f = 0; f < FRAMES; f++, pose++) {
+            *pose->a = floor;
+            *pose->b = box;
+            shape_move(pose->b, x + .01 * (double)f, y, .2 + height - 1e-3);
+            shape_turn_by(pose->a, frame, 0, 0, 0);
+            shape_turn_by(pose->b, frame, 0, 0, 0);
+            pose->truth.depth = 1e-3;
+            pose->motion = i;
+            pose->frame = f;
+        }
+    }
+    return pose ? FRAMES * n : 0;
 }
 
 /* --- files -------------------------------------------------------------------- */

@@ -48,6 +48,7 @@ pub struct Callbacks {
         *const c_int,
     ) -> *mut c_void,
     pub truth: unsafe extern "C-unwind" fn(*const c_void, *const c_void, f64, *mut [f64; 3], *mut f64) -> f64,
+    pub sliding: unsafe extern "C-unwind" fn(usize, *mut *mut Pair) -> usize,
     pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
     pub end: unsafe extern "C-unwind" fn(),
 }
@@ -136,6 +137,7 @@ impl Libraries {
                 support_placed: function(object, "bench_support_placed"),
                 place: function(object, "bench_place"),
                 truth: function(object, "bench_truth"),
+                sliding: function(object, "bench_sliding"),
                 counted: function(object, "bench_counted"),
                 end: function(object, "bench_end"),
             }

@@ -53,7 +53,7 @@ const fn entry(name: &'static str, place: Place) -> Entry {
 }
 
 /// Every method.
-const METHODS: [Entry; 22] = [
+const METHODS: [Entry; 23] = [
     entry("libccd ccdMPRPenetration", Place::Library),
     entry("libccd ccdGJKPenetration", Place::Library),
     entry("libccd ccdMPRIntersect", Place::Library),
@@ -76,6 +76,7 @@ const METHODS: [Entry; 22] = [
     entry("MuJoCo 3 ccd", Place::Peer),
     entry("Coal 3 EPA", Place::Peer),
     entry("Jolt 5 EPA", Place::Peer),
+    entry("ccdMPRPenetrationWarm, pos", Place::Library),
 ];
 
 /// Start of a search; in files the degrees by which a guess is off the true direction, `cold` or `warm`.
@@ -207,6 +208,9 @@ fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
         // SAFETY, here and below: a query over the callbacks' own shapes.
         "ccdMPRPenetrationWarm" => Box::new(|pair, ccd, warm, out| unsafe {
             ours.ccdMPRPenetrationWarm(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, null_mut())
+        }),
+        "ccdMPRPenetrationWarm, pos" => Box::new(|pair, ccd, warm, out| unsafe {
+            ours.ccdMPRPenetrationWarm(pair.a, pair.b, ccd, warm, &mut out.depth, &mut out.dir, &mut out.pos)
         }),
         "ccdIntersect" => Box::new(|pair, ccd, warm, _| unsafe { ours.ccdIntersect(pair.a, pair.b, ccd, warm) } - 1),
         // Of pairs that do not overlap the search ends as soon as they are known to be apart.

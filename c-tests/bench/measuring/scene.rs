@@ -38,7 +38,16 @@ pub struct Pair {
 }
 
 /// Kinds and depths of random pairs, in the order of `bench_random` in `callbacks.c`.
-pub const KINDS: [&str; 5] = ["boxes", "hulls", "capsules", "cylinders and cones", "ellipsoids"];
+pub const KINDS: [&str; 8] = [
+    "boxes",
+    "hulls",
+    "capsules",
+    "cylinders and cones",
+    "ellipsoids",
+    "hulls of 42 corners",
+    "hulls of 642 corners",
+    "hull of 162 corners and capsule",
+];
 pub const DEPTHS: [&str; 5] = ["shallow", "medium", "deep", "near", "far"];
 
 /// Pairs of one kind.
@@ -70,6 +79,13 @@ impl Scene {
         // SAFETY: the indices are those of the tables, which have callbacks.c's order.
         let pairs = Self::pairs(|poses| unsafe { make(index(kind), index(depth), num_pairs, poses) });
         Self { name: format!("{} {}", KINDS[kind], DEPTHS[depth]), pairs }
+    }
+
+    /// Makes motions of two frames of a box that slides on a larger one. Normals and guesses are missing.
+    pub fn sliding(libraries: &Libraries, num_motions: usize) -> Self {
+        // SAFETY: any number.
+        let pairs = Self::pairs(|poses| unsafe { (libraries.callbacks.sliding)(num_motions, poses) });
+        Self { name: "sliding boxes".to_owned(), pairs }
     }
 
     /// Returns the pairs that a function of callbacks.c makes.
