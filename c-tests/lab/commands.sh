@@ -82,7 +82,7 @@ run "which library a program loads" "libccd.so.2 => /lib" "" <<'END'
 ldd ./program | grep libccd
 END
 run "linked to the shared library" "^depth 0.100" 's/$/ \&\& .\/a.out/' <<'END'
-cc program.c -Iinclude target/swap/libccd.so.2 -Wl,-rpath,"$PWD/target/swap"
+cc program.c -Iinclude target/swap/libccd.so.2 -lm -Wl,-rpath,"$PWD/target/swap"
 END
 run "the example for FCL" "3.0 mm deep" "" <<'END'
 g++ -O2 -Iinclude -I/usr/include/eigen3 c-tests/examples/fcl.cpp target/swap/libccd.so.2 -Wl,-rpath,"$PWD/target/swap" -lfcl && ./a.out
