@@ -121,6 +121,7 @@ readme_table() {
             print "|---|---|---|---|---|---|---|"
             row("libccd `ccdMPRPenetration`", theirs, "MPR", "unbounded")
             row("libccd `ccdGJKPenetration`", theirs, "GJK + EPA", "unbounded")
+            row("the same, `epa_tolerance` 1e-12", theirs, "GJK + EPA, 1e-12", "unbounded")
             row("`ccdMPRPenetration`", ours, "MPR", "0.1 %")
             row("`ccdMPRPenetration`, `pos` NULL", warm, "MPR, no pos", "0.1 %")
             row("`ccdMPRPenetrationWarm`", warm, "MPR, warm", "0.1 %")

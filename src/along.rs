@@ -225,7 +225,7 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support_query::Direction;
-    use crate::shapes::{
+    use crate::test_shapes::{
         Random, Rotation, Shape, ball, corners, difference, ellipsoid, hull, placed,
     };
 

@@ -128,7 +128,8 @@ pub struct Penetration {
     /// [`penetration_along`].
     pub normal: [Real; 3],
     /// Contact position, [`Settings::pos`]: the center of pressure, an estimate of the centroid of the
-    /// overlap volume, projected along `normal` to the plane midway between the two support planes.
+    /// overlap volume, projected along `normal` to the plane midway between the two support planes; the
+    /// deeper the overlap, the nearer it is instead to a point between the centers, beside that plane.
     /// If `status` is not converged, and in [`penetration_along`] and [`penetration_planar`], the middle of the witness
     /// points.
     pub pos: [Real; 3],

@@ -7,17 +7,16 @@
 //! The package is called `warmccd`, the crate `ccd`, because it also builds `libccd.so`.
 //!
 //! A [`Shape`] has a support function, which returns a point of the shape farthest along a direction:
-//! a closure, or a type of the caller. [`penetration`] is the default call. With a [`Warm`] state for
+//! one of [`shapes`], a closure, or a type of the caller. [`penetration`] is the default call. With a [`Warm`] state for
 //! each pair, kept between frames, the next query of the pair takes fewer support calls:
 //!
 //! ```
-//! use ccd::{Real, Settings, Warm};
+//! use ccd::{Real, Settings, Warm, shapes::Posed};
 //!
-//! // A ball of radius 1, and a point inside it.
-//! let ball = |at: [Real; 3]| (move |d: [Real; 3]| [at[0] + d[0], at[1] + d[1], at[2] + d[2]], at);
+//! let a = Posed::sphere(1.0);
 //! let mut warm = Warm::default(); // cold
 //! for frame in 0..3 {
-//!     let (a, b) = (ball([0.0; 3]), ball([0.3 + 0.01 * frame as Real, 0.2, 0.1]));
+//!     let b = a.at([0.3 + 0.01 * frame as Real, 0.2, 0.1]);
 //!     if let Some(hit) = ccd::penetration(&a, &b, &Settings::new(1e-6), Some(&mut warm))? {
 //!         println!("move b by {} along {:?}", hit.depth, hit.dir);
 //!     }
@@ -73,9 +72,10 @@ mod paper {
 }
 mod portal;
 mod query;
+pub mod shapes;
 #[cfg(test)]
 #[path = "../c-tests/harness/shapes.rs"]
-mod shapes;
+mod test_shapes;
 mod trace;
 mod types;
 

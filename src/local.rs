@@ -585,7 +585,7 @@ mod tests {
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
     use crate::minkowski::support_query::Direction;
-    use crate::shapes::{
+    use crate::test_shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
     };
 

@@ -322,7 +322,7 @@ mod tests {
     use super::*;
     use crate::minkowski::support::SupportPoint;
     use crate::minkowski::tolerance::GAP_REL;
-    use crate::shapes::{Random, ball, capsule, corners, difference, hull, placed};
+    use crate::test_shapes::{Random, ball, capsule, corners, difference, hull, placed};
 
     const LIMIT: GapLimit = GapLimit::new(1e-6, GAP_REL);
 
@@ -396,7 +396,7 @@ mod tests {
     fn symmetric_pairs_have_portals() {
         let cube = corners(Vec3::repeat(0.5));
         for at in [Vec3::x() * 0.9, Vec3::new(0.9, 0.9, 0.0), Vec3::repeat(0.8)] {
-            let b = placed(&cube, &crate::shapes::Rotation::identity(), at);
+            let b = placed(&cube, &crate::test_shapes::Rotation::identity(), at);
             let (ray, portals, _) =
                 solve(hull(&cube), hull(&b), Vec3::zeros(), at).expect("a portal");
             assert!(portals.iter().all(|portal| is_crossed(portal, &ray, 1e-12)));

@@ -489,7 +489,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, capsule, corners, hull, placed};
+    use crate::test_shapes::{Random, capsule, corners, hull, placed};
 
     const SETTINGS: Settings = Settings {
         max_iterations: 1000,

@@ -12,11 +12,13 @@
 #define TESTS_SHAPES_H
 
 #include <ccd/ccd.h>
+#include <ccd/shapes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The shapes of every C test, and of the benchmark in Rust through bench/measuring/callbacks.c.
+/* The shapes of every C test, and of the benchmark in Rust through bench/measuring/callbacks.c. The callbacks of
+ * the first seven are those of <ccd/shapes.h>, the truth has its own for all (shape_support.h).
  * No switch over them has a `default:`, so what a new one lacks does not compile: its support
  * point (shape_support.h) and its size (shape_reach in truth.h). */
 #pragma GCC diagnostic error "-Wswitch"
@@ -169,30 +171,18 @@ static inline void shape_turn_by(shape_t *s, const double rot[9], double x, doub
 
 /* --- the callbacks ---------------------------------------------------------- */
 
-static inline ccd_real_t shape_vertex_value(const shape_t *s, int i, const ccd_real_t d[3])
-{
-    const ccd_real_t *v = s->verts + 3 * i;
-    return v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
-}
-
 static inline void shape_farthest(const shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
 {
-    int i, best = 0, ties;
-    ccd_real_t value = shape_vertex_value(s, 0, d);
-    for (i = 1; i < s->nverts; i++) {
-        ccd_real_t x = shape_vertex_value(s, i, d);
-        if (x > value) {
-            value = x;
-            best = i;
-        }
-    }
+    const int best = ccdShapeHullScan(s->verts, s->nverts, d);
+    const ccd_real_t value = ccdShapeHullValue(s->verts, best, d);
+    int i, ties;
     v[0] = s->verts[3 * best];
     v[1] = s->verts[3 * best + 1];
     v[2] = s->verts[3 * best + 2];
     if (s->tie != SHAPE_TIE_CENTRE)
         return;
     for (i = 0, ties = 1; i < s->nverts; i++)
-        if (i != best && !(shape_vertex_value(s, i, d) < value)) {
+        if (i != best && !(ccdShapeHullValue(s->verts, i, d) < value)) {
             v[0] += s->verts[3 * i];
             v[1] += s->verts[3 * i + 1];
             v[2] += s->verts[3 * i + 2];
@@ -213,6 +203,37 @@ static inline void shape_farthest(const shape_t *s, const ccd_real_t d[3], ccd_r
 #undef ROOT
 #undef POWER
 
+/* Writes the support point in the local frame: of a shape of <ccd/shapes.h> by that header. */
+__attribute__((always_inline)) static inline void shape_callback(const shape_t *s, const ccd_real_t d[3], ccd_real_t v[3])
+{
+    const ccd_real_t *p = s->p;
+    if (s->tie == SHAPE_TIE_CENTRE) {
+        shape_local_support(s, d, v);
+        return;
+    }
+    switch (s->type) {
+    case SHAPE_SPHERE: ccdShapeSphereSupport(p[0], d, v); break;
+    case SHAPE_CAPSULE: ccdShapeCapsuleSupport(p[0], p[1], d, v); break;
+    case SHAPE_BOX: ccdShapeBoxSupport(p, d, v); break;
+    case SHAPE_CYLINDER: ccdShapeCylinderSupport(p[0], p[1], d, v); break;
+    case SHAPE_CONE: ccdShapeConeSupport(p[0], p[1], d, v); break;
+    case SHAPE_ELLIPSOID: ccdShapeEllipsoidSupport(p, d, v); break;
+    case SHAPE_POLYTOPE: {
+        const int best = ccdShapeHullScan(s->verts, s->nverts, d);
+        for (int i = 0; i < 3; i++)
+            v[i] = s->verts[3 * best + i];
+        break;
+    }
+    case SHAPE_FRUSTUM:
+    case SHAPE_SUPERELLIPSOID:
+    case SHAPE_HALF_DISC:
+    case SHAPE_TEARDROP:
+    case SHAPE_HALF_BALL:
+    case SHAPE_CUT_BALL:
+    case SHAPE_SUM: shape_local_support(s, d, v); break;
+    }
+}
+
 /* Transforms a local point to the world. */
 static inline void shape_to_world(const shape_t *s, const ccd_real_t v[3], ccd_real_t out[3])
 {
@@ -232,7 +253,7 @@ static inline void shape_support(const void *obj, const ccd_vec3_t *dir, ccd_vec
     d[0] = r[0] * w[0] + r[3] * w[1] + r[6] * w[2];
     d[1] = r[1] * w[0] + r[4] * w[1] + r[7] * w[2];
     d[2] = r[2] * w[0] + r[5] * w[1] + r[8] * w[2];
-    shape_local_support(s, d, v);
+    shape_callback(s, d, v);
     shape_to_world(s, v, out->v);
 }
 

@@ -61,6 +61,10 @@ if [ "$wanted" != check ]; then
     git clone -q . "$work/a clone"
     cd "$work/a clone"
     program c README.md >program.c
+    mkdir target
+    cp program.c target
+    # This script's own files.
+    printf '%s\n' /program.c /program /program.so /app.py /arm64.cmake /arm64/ /kept/ /a.out >>.git/info/exclude
     cc -g program.c -Iinclude -lccd -lm -o program
     cc -shared -fPIC -Dmain=query program.c -Iinclude -lccd -lm -o program.so
     echo 'import ctypes; ctypes.CDLL("./program.so").query()' >app.py
@@ -72,7 +76,7 @@ installed="s/sudo //g; s/ && ldconfig//; s|/usr/local|$prefix|"
 
 run "a program with this library" "^depth 0.100" "" <<'END'
 cargo build --release
-cc program.c -Iinclude target/release/libccd.a -Wl,--gc-sections -s -lm && ./a.out
+cc target/program.c -Iinclude target/release/libccd.a -Wl,--gc-sections -s -lm -o target/program && target/program
 END
 run "the swap" "^depth 0.100" "" <<'END'
 mkdir -p target/swap && ln -sf "$PWD/target/release/libccd.so" target/swap/libccd.so.2
@@ -81,8 +85,8 @@ END
 run "which library a program loads" "libccd.so.2 => /lib" "" <<'END'
 ldd ./program | grep libccd
 END
-run "linked to the shared library" "^depth 0.100" 's/$/ \&\& .\/a.out/' <<'END'
-cc program.c -Iinclude target/swap/libccd.so.2 -Wl,-rpath,"$PWD/target/swap"
+run "linked to the shared library" "^depth 0.100" 's/$/ \&\& target\/program/' <<'END'
+cc target/program.c -Iinclude target/swap/libccd.so.2 -lm -Wl,-rpath,"$PWD/target/swap" -o target/program
 END
 run "the example for FCL" "3.0 mm deep" "" <<'END'
 g++ -O2 -Iinclude -I/usr/include/eigen3 c-tests/examples/fcl.cpp target/swap/libccd.so.2 -Wl,-rpath,"$PWD/target/swap" -lfcl && ./a.out
@@ -167,6 +171,12 @@ END
 run "lints in single precision" "Finished" "" <<'END'
 cargo clippy --all-targets --features single -- -D warnings
 END
+
+if [ "$wanted" = build ] && [ -n "$(git status --porcelain)" ]; then
+    git status --porcelain >&2
+    echo "commands.sh: a command leaves files that git does not track" >&2
+    exit 1
+fi
 
 group=figures
 run "simulations and FCL" "ms a step" "" <<'END'

@@ -32,6 +32,8 @@ mod extension;
 mod header;
 #[path = "packaging/packaging.rs"]
 mod packaging;
+#[path = "extension/shapes.rs"]
+mod shapes;
 
 // What the answers are worth. Recordings, Debian's programs and Debian's libccd are double.
 #[cfg(not(feature = "single"))]

@@ -43,7 +43,7 @@ mkdir "$work"
 cp -r "$here/../../c-tests" "$work/c-tests"
 # The programs ask whether there is an extension; libccd has no such headers.
 mkdir -p "$work/ours/ccd"
-cp "$here/../../include/ccd/warm.h" "$here/../../include/ccd/paper.h" "$work/ours/ccd"
+cp "$here/../../include/ccd/warm.h" "$here/../../include/ccd/paper.h" "$here/../../include/ccd/shapes.h" "$work/ours/ccd"
 cp "$out"/libwarmccd2_*"~deb${release}_"*.deb "$out"/libwarmccd-dev_*"~deb${release}_"*.deb "$work"
 cp "$here/programs.sh" "$work"
 

@@ -4,7 +4,7 @@
 /* The queries of warm.h, paper.h and ccd.h for C++17, under the same names in C++'s case: header
  * only, no allocation, nothing to free.
  *
- * A shape is any type with
+ * A shape is ccd::Shape, with the support functions of shapes.h, or any type with
  *
  *     V support(const ccd::Vec3 &dir) const;   a point of the shape farthest along dir (unit)
  *     V center() const;                        a point inside it, the deeper the better; or centre()
@@ -25,6 +25,7 @@
 
 #include <ccd/ccd.h>
 #include <ccd/paper.h>
+#include <ccd/shapes.h>
 #include <ccd/warm.h>
 
 #include <array>
@@ -62,6 +63,63 @@ struct Vec3 {
     constexpr Real operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
     /** The vector of the C interface. */
     constexpr operator ccd_vec3_t() const { return ccd_vec3_t{{x, y, z}}; }
+};
+
+/** A ready shape of shapes.h with its pose: sphere, capsule, box, cylinder, cone, ellipsoid or hull. */
+struct Shape : ccd_shape_t {
+    /** A shape that a function of shapes.h returned. */
+    Shape(const ccd_shape_t &shape) : ccd_shape_t(shape) {}
+
+    /** A sphere at the origin. */
+    static Shape sphere(Real radius) { return ccdShapeSphere(radius); }
+    /** A capsule along z; half: half the length of the segment between the centers of its ends. */
+    static Shape capsule(Real radius, Real half) { return ccdShapeCapsule(radius, half); }
+    /** A box with these half lengths of its edges. */
+    static Shape box(const Vec3 &half) { return ccdShapeBox(half.x, half.y, half.z); }
+    /** A cylinder along z; half: half its height. */
+    static Shape cylinder(Real radius, Real half) { return ccdShapeCylinder(radius, half); }
+    /** A cone along z with its tip at z = half, its base at z = -half. */
+    static Shape cone(Real radius, Real half) { return ccdShapeCone(radius, half); }
+    /** An ellipsoid with these half axes. */
+    static Shape ellipsoid(const Vec3 &half) { return ccdShapeEllipsoid(half.x, half.y, half.z); }
+    /** The convex hull of count points (x, y, z of each), which must outlive it. */
+    static Shape hull(const Real *points, int count) { return ccdShapeHull(points, count); }
+    /** The same for points that are all corners, with their neighbors: see ccdShapeHullWithNeighbors. */
+    static Shape hull(const Real *points, int count, const int *first, const int *neighbors)
+    {
+        return ccdShapeHullWithNeighbors(points, count, first, neighbors);
+    }
+
+    /** The shape at a position. */
+    Shape at(const Vec3 &position) const
+    {
+        Shape shape = *this;
+        shape.pos = position;
+        return shape;
+    }
+    /** The shape with a rotation, a unit quaternion (x, y, z, w). */
+    Shape turned(const ccd_quat_t &rotation) const
+    {
+        Shape shape = *this;
+        shape.quat = rotation;
+        return shape;
+    }
+
+    /** The point farthest along dir. */
+    Vec3 support(const Vec3 &dir) const
+    {
+        const ccd_vec3_t d = dir;
+        ccd_vec3_t point;
+        ccdShapeSupport(this, &d, &point);
+        return point;
+    }
+    /** A point inside. */
+    Vec3 center() const
+    {
+        ccd_vec3_t point;
+        ccdShapeCenter(this, &point);
+        return point;
+    }
 };
 
 /** Result of a query. */

@@ -392,7 +392,7 @@ impl PressureSum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{Random, ball, corners, difference, hull, placed};
+    use crate::test_shapes::{Random, ball, corners, difference, hull, placed};
     use nalgebra::{Rotation3, Vector3};
 
     /// Makes a fan of vertices (x, y, drop).

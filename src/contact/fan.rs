@@ -228,7 +228,7 @@ impl Fan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     /// Tests fans from a triangle to a sliver that points at the deepest point, and one in the wrong order: all areas
     /// are positive once the deepest point is enclosed. A point has none.

@@ -109,7 +109,7 @@ pub fn outwards(a: &Vec3, b: &Vec3, per_drop: f64, lean: f64) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     #[test]
     fn axes_rotate_no_faster_than_the_normal() {

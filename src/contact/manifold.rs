@@ -200,7 +200,7 @@ fn overlap_of_segments(
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{Random, ball, capsule, corners, hull, placed};
+    use crate::test_shapes::{Random, ball, capsule, corners, hull, placed};
 
     const SLOP: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-4 };
 
@@ -208,7 +208,7 @@ mod tests {
     /// in opposite directions.
     fn stacked(angle: f64, max: usize) -> Manifold {
         let plate = corners(Vec3::new(1.0, 1.0, 0.5));
-        let turn = crate::shapes::Rotation::from_axis_angle(&Vec3::z_axis(), angle);
+        let turn = crate::test_shapes::Rotation::from_axis_angle(&Vec3::z_axis(), angle);
         let plate = placed(&plate, &turn, Vec3::z() * -0.5);
         let cube = corners(Vec3::new(1.0, 1.0, 0.5));
         let cube = placed(&cube, &turn.inverse(), Vec3::z() * 0.49);

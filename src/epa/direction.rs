@@ -124,7 +124,7 @@ fn predict<const N: usize>(
 mod tests {
     use super::*;
     use crate::minkowski::support::MinkowskiDifference;
-    use crate::shapes::{Random, Rotation, Shape, ball, difference, ellipsoid};
+    use crate::test_shapes::{Random, Rotation, Shape, ball, difference, ellipsoid};
 
     const TOLERANCE: f64 = 1e-6;
 

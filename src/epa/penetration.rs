@@ -561,7 +561,7 @@ mod tests {
     use crate::math::EPSILON;
     use crate::minkowski::support::{Fault, MinkowskiDifference};
     use crate::minkowski::support_query::Direction;
-    use crate::shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
+    use crate::test_shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
     use crate::types::Settings;
     use core::cell::Cell;
 

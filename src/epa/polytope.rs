@@ -633,7 +633,7 @@ enum Insertion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     const F: usize = 1024;
     const EPSILON: f64 = f64::EPSILON;

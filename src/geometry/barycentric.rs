@@ -213,7 +213,7 @@ const PARALLEL_SINE2: f64 = if cfg!(feature = "single") { 1e-2 } else { 1e-6 };
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     /// Returns the corners of one kind of simplex: solid, flat, a needle, or with equal corners.
     fn corners(kind: usize, r: &mut Random) -> [Vec3; 4] {

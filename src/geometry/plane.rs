@@ -271,7 +271,7 @@ mod tests {
     /// Compares with the planes of random tetrahedra, many of which do not contain the origin.
     #[test]
     fn the_base_distance_is_that_of_the_closest_plane() {
-        let mut r = crate::shapes::Random::new(5);
+        let mut r = crate::test_shapes::Random::new(5);
         let mut found = [0; 2];
         for _ in 0..20000 {
             let apex = r.vector(0.5) - Vec3::z() * r.within(0.5, 2.0);

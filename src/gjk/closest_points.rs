@@ -281,7 +281,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
 mod tests {
     use super::*;
     use crate::math::{EPSILON, from_real, to_real};
-    use crate::shapes::{Random, ball, corners, difference, hull, placed};
+    use crate::test_shapes::{Random, ball, corners, difference, hull, placed};
 
     /// Tests boxes face to face and balls: the bounds close around the known distance, which is the distance
     /// of the points, and the search ends early for a distance larger than `max_distance`.

@@ -366,7 +366,7 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support_query::Direction;
-    use crate::shapes::{Random, ball, corners, difference, hull, placed};
+    use crate::test_shapes::{Random, ball, corners, difference, hull, placed};
 
     fn test_cold<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
@@ -407,15 +407,17 @@ mod tests {
     #[cfg(not(feature = "single"))]
     fn sliver_portal_does_not_enclose_the_origin() {
         // The radius and the height of either rim in the body's frame, and its rows.
-        let frustum = |rims: [[f64; 2]; 2], rows: [f64; 9], at: Vec3| -> crate::shapes::Shape {
-            let turn = nalgebra::Matrix3::from_row_slice(&rows);
-            Box::new(move |d: &Vec3| {
-                let d = turn.transpose() * d;
-                let across = d.x.hypot(d.y);
-                let [p, q] = rims.map(|[r, z]| Vec3::new(d.x / across * r, d.y / across * r, z));
-                at + turn * if p.dot(&d) > q.dot(&d) { p } else { q }
-            })
-        };
+        let frustum =
+            |rims: [[f64; 2]; 2], rows: [f64; 9], at: Vec3| -> crate::test_shapes::Shape {
+                let turn = nalgebra::Matrix3::from_row_slice(&rows);
+                Box::new(move |d: &Vec3| {
+                    let d = turn.transpose() * d;
+                    let across = d.x.hypot(d.y);
+                    let [p, q] =
+                        rims.map(|[r, z]| Vec3::new(d.x / across * r, d.y / across * r, z));
+                    at + turn * if p.dot(&d) > q.dot(&d) { p } else { q }
+                })
+            };
         let a = frustum(
             [
                 [0.8786275032787598, -0.0002843202673790413],

@@ -356,7 +356,7 @@ mod tests {
     use super::*;
     use crate::geometry::barycentric;
     use crate::minkowski::support_query::SupportQuery;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     /// Tests corners in a plane with the origin, and close to each other.
     #[test]
@@ -454,9 +454,9 @@ mod tests {
     #[test]
     fn compacted_set_keeps_corners() {
         let mut r = Random::new(44);
-        let md = crate::shapes::difference(
-            crate::shapes::ball(Vec3::zeros(), 1.0),
-            crate::shapes::ball(Vec3::x() * 3.0, 1.0),
+        let md = crate::test_shapes::difference(
+            crate::test_shapes::ball(Vec3::zeros(), 1.0),
+            crate::test_shapes::ball(Vec3::x() * 3.0, 1.0),
         );
         for _ in 0..100 {
             let mut query = SupportQuery::new(&md, None, 0.0);

@@ -95,7 +95,7 @@ pub fn in_general_position(n: &Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::minkowski::support::SupportPoint;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     #[test]
     fn tilted_directions_are_unit_opposite_and_turned_by_the_tilt() {

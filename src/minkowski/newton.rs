@@ -131,7 +131,7 @@ fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
 mod tests {
     use super::*;
     use crate::minkowski::support_query::SupportQuery;
-    use crate::shapes::{Random, Rotation, difference, ellipsoid};
+    use crate::test_shapes::{Random, Rotation, difference, ellipsoid};
 
     #[test]
     fn the_flattest_axis_is_an_eigenvector() {

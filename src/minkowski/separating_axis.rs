@@ -58,7 +58,7 @@ pub fn test_axis<A: SupportMap, B: SupportMap>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{Random, ball, capsule, difference};
+    use crate::test_shapes::{Random, ball, capsule, difference};
 
     /// Rotates an axis that does not separate, or hardly, to one that separates by most of the target separation.
     #[test]

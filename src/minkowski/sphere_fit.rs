@@ -485,7 +485,7 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::minkowski::support::MinkowskiDifference;
-    use crate::shapes::{Random, Shape, ball, corners, difference, hull};
+    use crate::test_shapes::{Random, Shape, ball, corners, difference, hull};
 
     const ROUNDING: f64 = 1e3 * EPSILON;
 

@@ -171,7 +171,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     #[test]
     fn witnesses_differ_by_the_point() {

@@ -440,9 +440,9 @@ fn representable(dir: &Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::shapes::{ball, difference};
+    use crate::test_shapes::{ball, difference};
     #[cfg(not(feature = "single"))]
-    use crate::shapes::{corners, hull};
+    use crate::test_shapes::{corners, hull};
 
     #[test]
     fn samples_are_stored_with_the_upper_bound() {

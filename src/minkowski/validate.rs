@@ -185,7 +185,7 @@ fn check_repetition(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::{ball, capsule, corners, hull};
+    use crate::test_shapes::{ball, capsule, corners, hull};
     use core::cell::Cell;
 
     #[test]

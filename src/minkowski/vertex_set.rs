@@ -266,7 +266,7 @@ impl<const N: usize> VertexSet<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes::Random;
+    use crate::test_shapes::Random;
 
     fn random_set<const N: usize>(r: &mut Random, count: usize) -> VertexSet<N> {
         let mut set = VertexSet::EMPTY;

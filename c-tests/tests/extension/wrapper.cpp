@@ -296,6 +296,39 @@ static void support_checks()
         }
 }
 
+/* Every ready shape is the one of shapes.h, and a query takes it. */
+static void ready_shapes()
+{
+    static const ccd::Real points[] = {1, 0, 0, -1, 1, 0, -1, -1, 0, 0, 0, 1};
+    static const int first[] = {0, 3, 6, 9, 12}, neighbors[] = {1, 2, 3, 0, 2, 3, 0, 1, 3, 0, 1, 2};
+    const std::pair<ccd::Shape, ccd_shape_t> pairs[] = {
+        {ccd::Shape::sphere(2), ccdShapeSphere(2)},
+        {ccd::Shape::capsule(1, 2), ccdShapeCapsule(1, 2)},
+        {ccd::Shape::box({1, 2, 3}), ccdShapeBox(1, 2, 3)},
+        {ccd::Shape::cylinder(1, 2), ccdShapeCylinder(1, 2)},
+        {ccd::Shape::cone(1, 2), ccdShapeCone(1, 2)},
+        {ccd::Shape::ellipsoid({1, 2, 3}), ccdShapeEllipsoid(1, 2, 3)},
+        {ccd::Shape::hull(points, 4), ccdShapeHull(points, 4)},
+        {ccd::Shape::hull(points, 4, first, neighbors), ccdShapeHullWithNeighbors(points, 4, first, neighbors)},
+    };
+    for (const auto &pair : pairs) {
+        const ccd_quat_t quat = {{CCD_REAL(0.5), CCD_REAL(0.5), CCD_REAL(0.5), CCD_REAL(0.5)}};
+        const ccd::Shape shape = pair.first.at({1, 2, 3}).turned(quat);
+        ccd_shape_t in_c = pair.second;
+        ccdVec3Set(&in_c.pos, 1, 2, 3);
+        in_c.quat = quat;
+        for (int i = 0; i < 50; i++) {
+            const ccd_vec3_t d = random_vec3(1), p = shape.support(d), c = shape.center();
+            ccd_vec3_t q, center;
+            ccdShapeSupport(&in_c, &d, &q);
+            ccdShapeCenter(&in_c, &center);
+            CHECK(same_bits(&p, &q, sizeof p) && same_bits(&c, &center, sizeof c), "kind %d", in_c.kind);
+        }
+        CHECK(!ccd::check(shape), "kind %d", in_c.kind);
+        CHECK(ccd::penetration(shape, ccd::Shape::sphere(1).at({1, 2, 3})), "kind %d", in_c.kind);
+    }
+}
+
 int main()
 {
     results_are_those_of_c();
@@ -303,5 +336,6 @@ int main()
         exceptions(call);
     conditions();
     support_checks();
+    ready_shapes();
     return checks_end();
 }

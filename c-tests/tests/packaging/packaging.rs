@@ -200,19 +200,19 @@ fn readme_link_commands() {
     link(&root().join("include"), "include");
     link(&library.dir, "target/release");
     link(&library.dir.join("libccd.so"), "target/swap/libccd.so.2");
-    fs::copy(program_of("readme-linked", "README.md", "c"), here.join("program.c")).expect("a copy");
+    fs::copy(program_of("readme-linked", "README.md", "c"), here.join("target/program.c")).expect("a copy");
     let page = page("README.md");
     let lines = page
         .split(['`', '\n'])
-        .filter(|code| code.starts_with("cc program.c "))
-        .map(|code| code.trim_end_matches(" && ./a.out"));
+        .filter(|code| code.starts_with("cc target/program.c "))
+        .map(|code| code.trim_end_matches(" && target/program"));
     assert_eq!(lines.clone().count(), 2);
     for line in lines {
         let mut shell = Command::new("sh");
-        shell.current_dir(&here).arg("-c").arg(format!("{line} && ./a.out"));
+        shell.current_dir(&here).arg("-c").arg(format!("{line} && target/program"));
         assert_depth_of_the_ball(&must_succeed(&mut shell, line).stdout);
         // The linker leaves out most of the archive's 15 MB.
-        assert_small(line, size(&here.join("a.out")), 550_000);
+        assert_small(line, size(&here.join("target/program")), 550_000);
     }
 }
 

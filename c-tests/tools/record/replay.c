@@ -48,6 +48,14 @@ static int evaluate_libccd(const method_t *m, const query_t *q, result_t *out)
     return m->libccd(q->obj1, q->obj2, q->ccd, &out->depth, &out->dir, &out->pos);
 }
 
+/* The same with an epa_tolerance of 1e-12: libccd compares it with square metres. */
+static int evaluate_squared(const method_t *m, const query_t *q, result_t *out)
+{
+    ccd_t ccd = *q->ccd;
+    ccd.epa_tolerance = (ccd_real_t)(TOLERANCE * TOLERANCE);
+    return m->libccd(q->obj1, q->obj2, &ccd, &out->depth, &out->dir, &out->pos);
+}
+
 enum { SUPPORT_POINTS = 8 };
 
 /* Evaluates both support functions in one direction after another, to measure the price of a support point. */
@@ -89,6 +97,7 @@ static method_t method[] = {
     {.name = "support points", .evaluate = evaluate_supports},
     {.name = "MPR", .evaluate = evaluate_libccd, .libccd = ccdMPRPenetration},
     {.name = "GJK + EPA", .evaluate = evaluate_libccd, .libccd = ccdGJKPenetration},
+    {.name = "GJK + EPA, 1e-12", .evaluate = evaluate_squared, .libccd = ccdGJKPenetration},
 #ifdef OURS_ALONE
     {.name = "MPR, no pos", .evaluate = evaluate_extension, .call = CALL_MPR},
     {.name = "MPR, warm", .evaluate = evaluate_extension, .call = CALL_MPR_WARM, .is_warm = 1, .has_pos = 1},

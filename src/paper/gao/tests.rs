@@ -5,7 +5,7 @@
 
 mod search {
     use super::super::*;
-    use crate::shapes::{Random, ball, capsule, corners, difference, ellipsoid, hull, placed};
+    use crate::test_shapes::{Random, ball, capsule, corners, difference, ellipsoid, hull, placed};
 
     const SETTINGS: Settings = Settings {
         max_iterations: 20_000,
@@ -111,7 +111,7 @@ mod search {
             let v = e.sqp(e.exit(&r.direction()), |_| ());
             assert!(e.normal(&v).cross(&v).norm() < 1e4 * EPSILON);
 
-            let support = ellipsoid(e.radii, crate::shapes::Rotation::identity(), e.center);
+            let support = ellipsoid(e.radii, crate::test_shapes::Rotation::identity(), e.center);
             let md = difference(support, |_: &Vec3| Vec3::zeros());
             let mut ray = support_plane(&md, r.direction()).unwrap();
             for _ in 0..20 {
@@ -268,7 +268,9 @@ mod search {
 mod portal {
     use super::super::*;
     use crate::minkowski::support_query::Direction;
-    use crate::shapes::{Random, Rotation, Shape, corners, difference, ellipsoid, hull, placed};
+    use crate::test_shapes::{
+        Random, Rotation, Shape, corners, difference, ellipsoid, hull, placed,
+    };
 
     const ULPS: f64 = 100.0 * EPSILON;
 
@@ -434,7 +436,7 @@ mod portal {
 mod planar {
     use super::super::*;
     use crate::minkowski::support_query::Direction;
-    use crate::shapes::{Random, Rotation, difference, hull};
+    use crate::test_shapes::{Random, Rotation, difference, hull};
 
     const TAU: f64 = core::f64::consts::TAU as f64;
 
