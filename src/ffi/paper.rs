@@ -17,7 +17,8 @@ use crate::query::Solver;
 
 /// Computes a local minimum of the penetration depth by the paper's Algorithms 4 and 5 with the
 /// shortcut of its Section III-C. The result is sound: depth is the least support value evaluated,
-/// and an overlap is proven.
+/// and an overlap is proven. Directions are evaluated as they are, not tilted: a support function
+/// that is wrong along its own axis, as ODE's cylinder, gives wrong depths and misses.
 ///
 /// `warm`: may be NULL. `want`: CCD_WANT_ flags.
 ///
