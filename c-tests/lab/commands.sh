@@ -208,6 +208,7 @@ sh cmake/packages/source.sh OUT
 sh c-tests/lab/release.sh LOGS
 sh c-tests/lab/release.sh LOGS packaging packaging-single
 sh c-tests/lab/fcl_tests.sh
+sh c-tests/lab/ode_demos.sh
 sh c-tests/setup.sh lab
 release.sh LOGS STEP...
 tests.sh SUITE
@@ -236,6 +237,17 @@ try.sh bookworm
 try.sh trixie
 apt-get install ./libwarmccd2_*.deb
 apt-get install libccd2
+END
+elsewhere "linux-inside.sh, in the archive" <<'END'
+linux.sh OUT
+sh cmake/packages/linux.sh OUT
+try-linux.sh SUITE ARCHIVE
+./run-on-warmccd.sh PROGRAM
+LD_LIBRARY_PATH=$PWD/lib PROGRAM
+cc example.c -Iinclude lib/libccd.a -Wl,--gc-sections -lm -o example && ./example
+cc example.c -Iinclude lib/libccd.so.2 -lm -Wl,-rpath,"$PWD/lib" -o example && ./example
+cc example.c $(PKG_CONFIG_PATH=$PWD/lib/pkgconfig pkg-config --cflags --libs ccd) -Wl,-rpath,"$PWD/lib" -o example && ./example
+cmake -S . -B build -DCMAKE_PREFIX_PATH=/path/to/this/folder
 END
 elsewhere ".ci/run" <<'END'
 cargo test
