@@ -156,7 +156,7 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     let first_known = set.len().saturating_sub(MAX_KNOWN);
     query
         .known(set, other, first_known)
-        .for_each(|v| limit.add(&v));
+        .for_each(|v| _ = limit.add(&v));
     let mut other_fan = Fan::EMPTY;
     let feature = match limit.is_plane() {
         true => Feature::Plane,
@@ -199,7 +199,7 @@ fn build_fan<A: SupportMap, B: SupportMap>(
     if !query.find_polygon(object, limit, &mut corners)? {
         return Ok(Feature::Plane);
     }
-    *fan = Fan::new(&corners, query.vertex_offset);
+    fan.set(&corners, query.vertex_offset);
     let [has_size, is_around] = fan.close(POINT_REL * query.extent);
     let has_area = has_size && (is_around || fan.enclose_deepest_point(query.vertex_offset));
     Ok(if has_area {

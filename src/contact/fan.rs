@@ -38,37 +38,36 @@ impl Fan {
         len: 0,
     };
 
-    /// Makes the fan of a polygon: each corner moved outwards by `distance` and raised by the drop that all have in common.
+    /// Becomes the fan of a polygon: each corner moved outwards by `distance` and raised by the drop that all have in common.
     /// An edge has its ends also to both sides, a point has four vertices.
     #[inline(always)]
-    pub fn new(corners: &Corners, distance: f64) -> Self {
-        let mut fan = Self::EMPTY;
-        let least = corners.iter().fold(1.0, |least, c| lesser(c.at.z, least));
+    pub fn set(&mut self, corners: &Corners, distance: f64) {
+        self.len = 0;
+        let least = corners.iter().fold(1.0, |least, c| lesser(c.z, least));
         let common = COMMON_DROP_FACTOR * least;
         match &**corners {
             [a] => {
                 for out in four_directions(Vec2::x()) {
-                    fan.push(moved(&a.at, out, distance, common));
+                    self.push(moved(a, out, distance, common));
                 }
             }
             [a, b] => {
-                let along = offset(&a.at, &b.at);
+                let along = offset(a, b);
                 let out = four_directions(along * (1.0 / along.norm()));
                 for (v, k) in [(a, 2), (a, 3), (b, 0), (b, 1)] {
-                    fan.push(moved(&v.at, out[k], distance, common));
+                    self.push(moved(v, out[k], distance, common));
                 }
             }
             _ => {
-                let mean = corners.iter().map(|c| c.at).sum::<Vec3>() / corners.len() as f64;
+                let mean = corners.iter().sum::<Vec3>() / corners.len() as f64;
                 for v in corners.iter() {
-                    let out = offset(&mean, &v.at);
+                    let out = offset(&mean, v);
                     let norm2 = larger(out.norm_squared(), f64::MIN_POSITIVE);
-                    fan.push(moved(&v.at, out, distance / norm2.sqrt(), common));
+                    self.push(moved(v, out, distance / norm2.sqrt(), common));
                 }
             }
         }
-        fan.remove_steep();
-        fan
+        self.remove_steep();
     }
 
     /// Returns the vertices.

@@ -19,12 +19,13 @@
 //! curved outline is a polygon whose sides close early. All corners are vertices at the same tilt, so that they
 //! do not depend on what was known before.
 
+use crate::contact::fan::Fan;
 use crate::contact::feature::{ContactQuery, four_directions};
 use crate::contact::frame::outwards;
 use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, DROP_TOL, TILT_FACTOR};
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Vec2, offset};
-use crate::math::{Vec3, larger, lesser};
+use crate::math::{Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 
 /// Largest number of corners of a polygon.
@@ -39,23 +40,33 @@ const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
 
 /// A corner, and the side from it to the next one, counterclockwise.
 #[derive(Clone, Copy, Default)]
-pub struct Corner {
-    pub at: Vec3,
+struct Corner {
+    at: Vec3,
+    /// The same without the common drop, at the end of the overlap ([`in_overlap`]).
+    inside: Vec3,
     /// The first and the last direction, counterclockwise, that returned the corner.
     first: Vec2,
     last: Vec2,
     /// The direction out of the side.
     out: Vec2,
-    /// By how much a corner beyond the side may be higher than its ends, at most, metres.
+    /// By how much a corner beyond the side may be higher than its ends, at most, metres; 0 if there is none.
     gap: f64,
-    /// By how much that corner could move the centroid, metres; not more than 0 if there is none.
-    shift: f64,
-    /// True if there is no corner beyond the side.
-    is_closed: bool,
+    /// The index of the next corner.
+    next: usize,
 }
 
-/// The corners found so far, counterclockwise.
-pub type Corners = FixedVec<Corner, MAX_CORNERS>;
+/// The corners found so far, in the order of finding; `next` is their order around the polygon.
+struct Found {
+    corners: FixedVec<Corner, MAX_CORNERS>,
+    /// By how much a corner beyond each side could move the centroid, metres; not more than 0 if there is none.
+    shifts: [f64; MAX_CORNERS],
+    /// The drop that all corners have in common.
+    common: f64,
+    own: Overlap,
+}
+
+/// The corners of a polygon, counterclockwise.
+pub type Corners = FixedVec<Vec3, MAX_CORNERS>;
 
 /// The overlap of a polygon with a plane.
 #[derive(Clone, Copy)]
@@ -65,63 +76,70 @@ struct Overlap {
     /// The sum of its vertices, and their number.
     sum: Vec2,
     count: f64,
-    /// The drop that all corners have in common.
-    common: f64,
 }
 
 /// What limits the search of the larger object.
-pub struct Limit<'f> {
+pub struct Limit {
     /// The outline of the smaller object, mirrored, beyond which no corner matters.
-    pub outline: &'f [Vec3],
+    outline: FixedVec<Vec2, { Fan::CAPACITY }>,
+    overlap: Overlap,
     /// Vertices in the support plane, those farthest along the axes and their opposites.
-    face: [Vec3; 4],
+    face: [Vec2; 4],
     /// Distance by which the outline may be outside of them, metres.
     slack: f64,
 }
 
-impl<'f> Limit<'f> {
-    /// Makes the limit without vertices in the support plane.
-    pub fn new(outline: &'f [Vec3], slack: f64) -> Self {
-        Self {
-            outline,
-            face: [Vec3::zeros(); 4],
+impl Limit {
+    /// Makes the limit without vertices in the support plane. `outline`: of the smaller object, in its own frame.
+    #[inline(always)]
+    pub fn new(outline: &[Vec3], slack: f64) -> Self {
+        let mut limit = Self {
+            outline: FixedVec::default(),
+            overlap: Overlap::EMPTY,
+            face: [Vec2::zeros(); 4],
             slack,
+        };
+        let mut last = in_overlap(outline.last().unwrap_or(&ZERO), 0.0);
+        for v in outline {
+            let v = in_overlap(v, 0.0);
+            limit.overlap.add(volume_of(&last, &v), &-v);
+            limit.outline.push(-v.xy());
+            last = v;
         }
+        limit
     }
 
-    /// Adds a vertex if it is in the support plane.
+    /// Adds a vertex if it is in the support plane. Returns whether it is farther than the others.
     #[inline(always)]
-    pub fn add(&mut self, v: &Vec3) {
-        if v.z <= DROP_TOL {
-            for (k, place) in self.face.iter_mut().enumerate() {
-                let height = |p: &Vec3| if k % 2 == 0 { p.x } else { p.y };
-                let is_farther = if k < 2 {
-                    height(v) > height(place)
-                } else {
-                    height(v) < height(place)
-                };
-                *place = if is_farther { *v } else { *place };
-            }
+    pub fn add(&mut self, v: &Vec3) -> bool {
+        if !(v.z <= DROP_TOL) {
+            return false;
         }
+        let [a, b, c, d] = &mut self.face;
+        let farther = [v.x > a.x, v.y > b.y, v.x < c.x, v.y < d.y];
+        for (place, is_farther) in [a, b, c, d].into_iter().zip(farther) {
+            *place = if is_farther { v.xy() } else { *place };
+        }
+        farther
+            .iter()
+            .fold(false, |any, is_farther| any | is_farther)
     }
 
     /// Returns whether the vertices in the support plane contain the outline: then so does the face, which is convex.
     #[inline(always)]
     pub fn is_plane(&self) -> bool {
         let [a, b, c, d] = &self.face;
-        let (first, second) = (offset(a, c), offset(b, d));
+        let (first, second) = (c - a, d - b);
         // A quadrilateral without area contains nothing. Negated for NaN.
         let sum = first.x.abs() + first.y.abs() + second.x.abs() + second.y.abs();
         if !(first.perp(&second) > self.slack * sum) {
             return false;
         }
-        for i in 0..4 {
-            let corner = &self.face[i % 4];
-            let side = offset(corner, &self.face[(i + 1) % 4]);
-            let least = side.perp(&corner.xy()) - self.slack * (side.x.abs() + side.y.abs());
-            for p in self.outline {
-                // The other object's outline is mirrored. It is scaled where its drop exceeds the depth.
-                if !(side.y * p.x - side.x * p.y >= least * larger(p.z, 1.0)) {
+        for [p, q] in [[a, b], [b, c], [c, d], [d, a]] {
+            let side = q - p;
+            let least = side.perp(p) - self.slack * (side.x.abs() + side.y.abs());
+            for v in self.outline.iter() {
+                if !(side.perp(v) >= least) {
                     return false;
                 }
             }
@@ -129,17 +147,15 @@ impl<'f> Limit<'f> {
         true
     }
 
-    /// Returns how far the outline is beyond the side of a corner, metres; 0 if it is not.
+    /// Returns how far the outline is beyond the side from `p` to `q`, metres; 0 if it is not.
     #[inline(always)]
     fn reach_beyond(&self, p: &Vec3, q: &Vec3) -> f64 {
         let side = offset(p, q);
         let level = p.xy().perp(&side);
         let length = side.norm();
-        let mut most = self.slack * length;
-        let least = most;
-        for v in self.outline {
-            most = larger(-v.xy().perp(&side) / larger(v.z, 1.0) - level, most);
-        }
+        let least = self.slack * length;
+        let most = |most, v: &Vec2| larger(v.perp(&side) - level, most);
+        let most = self.outline.iter().fold(least, most);
         if most > least { most / length } else { 0.0 }
     }
 }
@@ -156,44 +172,46 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
         mut limit: Option<&mut Limit>,
         corners: &mut Corners,
     ) -> Result<bool, Fault> {
+        let mut found = Found {
+            corners: FixedVec::default(),
+            shifts: [0.0; MAX_CORNERS],
+            common: 1.0,
+            own: Overlap::EMPTY,
+        };
         for out in four_directions(Vec2::x()) {
             let at = self.query(object, out)?;
-            self.add_first(corners, at, out);
+            found.add_first(at, out, self.vertex_offset);
             if let Some(limit) = &mut limit {
-                limit.add(&at);
-                if limit.is_plane() {
+                if limit.add(&at) && limit.is_plane() {
                     return Ok(false);
                 }
             }
         }
-        if corners.len() < 2 {
-            return Ok(true);
+        if found.corners.len() > 1 {
+            self.search_sides(object, limit.as_deref(), &mut found)?;
         }
-        // That of the smaller object, mirrored.
-        let limiting = limit
-            .as_ref()
-            .map(|limit| Overlap::of(limit.outline.iter(), 0.0));
-        let mut own = Overlap::of([].iter(), 1.0);
-        let mut overlap = own;
-        let mut is_new = true;
+        found.write_to(corners);
+        Ok(true)
+    }
+
+    /// Searches beyond the sides of the first corners.
+    #[inline(always)]
+    fn search_sides(
+        &self,
+        object: usize,
+        limit: Option<&Limit>,
+        found: &mut Found,
+    ) -> Result<(), Fault> {
+        for i in 0..found.corners.len() {
+            self.open_side(found, i);
+        }
+        let mut overlap = self.lower_common_drop(found, limit);
         let tolerance = CORNER_SHIFT_REL * self.extent;
         for _ in 0..MAX_STEPS {
-            if is_new {
-                // The drop that all corners have in common has fallen.
-                let least = corners.iter().fold(1.0, |least, c| lesser(c.at.z, least));
-                own = Overlap::of(corners.iter().map(|c| &c.at), COMMON_DROP_FACTOR * least);
-                overlap = own.limited(&limiting);
-                for i in 0..corners.len() {
-                    if !corners.cyclic(i).is_closed {
-                        self.open_side(corners, i, &overlap);
-                    }
-                }
-                is_new = false;
-            }
             let (mut side, mut most) = (MAX_CORNERS, tolerance);
-            for (i, corner) in corners.iter().enumerate() {
-                (side, most) = if corner.shift > most {
-                    (i, corner.shift)
+            for (i, shift) in found.shifts.iter().enumerate() {
+                (side, most) = if *shift > most {
+                    (i, *shift)
                 } else {
                     (side, most)
                 };
@@ -201,86 +219,82 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
             if side == MAX_CORNERS {
                 break;
             }
-            let [p, q] = [side, side + 1].map(|i| corners.cyclic(i));
-            let (from, to, out, gap) = (p.at, q.at, p.out, p.gap);
+            let p = found.corners.cyclic(side);
+            let q = found.corners.cyclic(p.next);
             // The overlap has grown since the estimate.
-            let reach = limit
-                .as_ref()
-                .map_or(gap, |limit| lesser(limit.reach_beyond(&from, &to), gap));
-            let shift = overlap.shift(&from, &to, reach, self.depth_over_tilt);
+            let reach = limit.map_or(p.gap, |limit| {
+                lesser(limit.reach_beyond(&p.at, &q.at), p.gap)
+            });
+            let shift = overlap.shift(p, q, reach, found.common, self.depth_over_tilt);
             if !(shift > tolerance) {
-                corners.cyclic_mut(side).shift = shift;
+                found.shifts[side] = shift;
                 continue;
             }
+            let out = p.out;
             let at = self.query(object, out)?;
-            let level = larger(self.height(&from, &out), self.height(&to, &out));
+            let level = larger(self.height(&p.at, &out), self.height(&q.at, &out));
             if !(self.height(&at, &out) > level + 2.0 * self.vertex_offset) {
-                (
-                    corners.cyclic_mut(side).shift,
-                    corners.cyclic_mut(side).is_closed,
-                ) = (0.0, true);
+                found.shifts[side] = 0.0;
+                found.corners.cyclic_mut(side).gap = 0.0;
                 continue;
             }
-            if corners.len() == MAX_CORNERS {
+            let new = found.corners.len();
+            if new == MAX_CORNERS {
                 break;
             }
-            let new = Corner {
-                at,
-                first: out,
-                last: out,
-                ..Corner::default()
-            };
-            corners.insert(side + 1, new);
-            is_new = COMMON_DROP_FACTOR * at.z < overlap.common;
-            if !is_new {
-                own.add(&from, &at, &to);
-                overlap = own.limited(&limiting);
-                self.open_side(corners, side, &overlap);
-                self.open_side(corners, side + 1, &overlap);
+            found.insert(side, at, out);
+            self.open_side(found, side);
+            self.open_side(found, new);
+            if COMMON_DROP_FACTOR * at.z < found.common {
+                overlap = self.lower_common_drop(found, limit);
+            } else {
+                found.add_volume(side);
+                overlap = found.own.limited(limit);
+                self.estimate_shift(found, side, &overlap);
+                self.estimate_shift(found, new, &overlap);
             }
         }
-        Ok(true)
+        Ok(())
     }
 
-    /// Adds the vertex of one of the first directions, unless it is the last or the first corner.
+    /// Sets the drop that all corners have in common, and what depends on it. Returns the overlap.
     #[inline(always)]
-    fn add_first(&self, corners: &mut Corners, at: Vec3, out: Vec2) {
-        let is_same = |c: &Corner| {
-            let distance = offset(&c.at, &at);
-            larger(distance.x.abs(), distance.y.abs()) <= self.vertex_offset
-        };
-        if let Some(last) = corners.last_mut().filter(|c| is_same(c)) {
-            last.last = out;
-        } else if let Some(first) = corners.first_mut().filter(|c| is_same(c)) {
-            first.first = out;
-        } else {
-            corners.push(Corner {
-                at,
-                first: out,
-                last: out,
-                ..Corner::default()
-            });
+    fn lower_common_drop(&self, found: &mut Found, limit: Option<&Limit>) -> Overlap {
+        found.set_common_drop();
+        let overlap = found.own.limited(limit);
+        for i in 0..found.corners.len() {
+            self.estimate_shift(found, i, &overlap);
         }
+        overlap
     }
 
-    /// Prepares the search beyond a side.
+    /// Estimates by how much a corner beyond a side could move the centroid.
     #[inline(always)]
-    fn open_side(&self, corners: &mut Corners, i: usize, overlap: &Overlap) {
-        let [p, q] = [i, i + 1].map(|i| corners.cyclic(i));
-        let (out, gap) = self.gap_beyond(p, q);
-        let shift = overlap.shift(&p.at, &q.at, gap, self.depth_over_tilt);
-        let corner = corners.cyclic_mut(i);
-        (corner.out, corner.gap, corner.shift) = (out, gap, shift);
+    fn estimate_shift(&self, found: &mut Found, i: usize, overlap: &Overlap) {
+        let p = found.corners.cyclic(i);
+        let q = found.corners.cyclic(p.next);
+        let shift = overlap.shift(p, q, p.gap, found.common, self.depth_over_tilt);
+        found.shifts[i.min(MAX_CORNERS - 1)] = shift;
     }
 
-    /// Returns the direction out of a side, and by how much a corner beyond it may be higher than its ends, at most.
+    /// Finds the direction out of a side, and by how much a corner beyond it may be higher than its ends, at most.
     #[inline(always)]
-    fn gap_beyond(&self, p: &Corner, q: &Corner) -> (Vec2, f64) {
+    fn open_side(&self, found: &mut Found, i: usize) {
+        let p = found.corners.cyclic(i);
+        let q = found.corners.cyclic(p.next);
         let out = outwards(&p.at, &q.at, self.depth_over_tilt, 0.0);
+        let gap = self.gap_beyond(p, q, out);
+        let side = found.corners.cyclic_mut(i);
+        (side.out, side.gap) = (out, gap);
+    }
+
+    /// Returns by how much a corner beyond a side may be higher than its ends along `out`, at most.
+    #[inline(always)]
+    fn gap_beyond(&self, p: &Corner, q: &Corner, out: Vec2) -> f64 {
         let length = offset(&p.at, &q.at).norm();
         // Negated for NaN.
         if !(length > self.vertex_offset && lesser(p.at.z, q.at.z) < MAX_SIDE_DROP) {
-            return (out, 0.0);
+            return 0.0;
         }
         // By how much each end is higher along its direction than the other one.
         let rise_p = self.height(&p.at, &p.last) - self.height(&q.at, &p.last);
@@ -290,69 +304,136 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
         let (alpha, beta) = (out.perp(&q.first), p.last.perp(&out));
         let rise = 0.5 * (alpha * larger(rise_p, 0.0) + beta * larger(rise_q, 0.0));
         let is_bounded = rise < turn * length && alpha >= 0.0 && beta >= 0.0;
-        (out, if is_bounded { rise / turn } else { length })
+        if is_bounded { rise / turn } else { length }
+    }
+}
+
+impl Found {
+    /// Adds the vertex of one of the first directions, unless it is the last or the first corner.
+    #[inline(always)]
+    fn add_first(&mut self, at: Vec3, out: Vec2, vertex_offset: f64) {
+        let is_same = |c: &Corner| {
+            let distance = offset(&c.at, &at);
+            larger(distance.x.abs(), distance.y.abs()) <= vertex_offset
+        };
+        if let Some(last) = self.corners.last_mut().filter(|c| is_same(c)) {
+            last.last = out;
+        } else if let Some(first) = self.corners.first_mut().filter(|c| is_same(c)) {
+            first.first = out;
+        } else {
+            self.append(at, out, 0);
+        }
+    }
+
+    /// Appends a corner, after the last one found.
+    #[inline(always)]
+    fn append(&mut self, at: Vec3, out: Vec2, next: usize) {
+        let end = self.corners.len();
+        if let Some(last) = self.corners.last_mut() {
+            last.next = end;
+        }
+        self.corners.push(Corner {
+            at,
+            first: out,
+            last: out,
+            next,
+            ..Corner::default()
+        });
+    }
+
+    /// Inserts a corner into a side.
+    #[inline(always)]
+    fn insert(&mut self, side: usize, at: Vec3, out: Vec2) {
+        let new = self.corners.len();
+        let from = self.corners.cyclic_mut(side);
+        let next = core::mem::replace(&mut from.next, new);
+        self.corners.push(Corner {
+            at,
+            inside: in_overlap(&at, self.common),
+            first: out,
+            last: out,
+            next,
+            ..Corner::default()
+        });
+    }
+
+    /// Sets the drop that all corners have in common, and the overlap.
+    #[inline(always)]
+    fn set_common_drop(&mut self) {
+        let least = |least, c: &Corner| lesser(c.at.z, least);
+        self.common = COMMON_DROP_FACTOR * self.corners.iter().fold(1.0, least);
+        for c in self.corners.iter_mut() {
+            c.inside = in_overlap(&c.at, self.common);
+        }
+        self.own = Overlap::EMPTY;
+        for p in self.corners.iter() {
+            let q = &self.corners.cyclic(p.next).inside;
+            self.own.add(volume_of(&p.inside, q), q);
+        }
+    }
+
+    /// Adds the corner after a side to the overlap.
+    #[inline(always)]
+    fn add_volume(&mut self, side: usize) {
+        let from = self.corners.cyclic(side);
+        let at = self.corners.cyclic(from.next);
+        let to = self.corners.cyclic(at.next);
+        let [from, at, to] = [&from.inside, &at.inside, &to.inside];
+        let volume = volume_of(from, at) + volume_of(at, to) - volume_of(from, to);
+        self.own.add(volume, at);
+    }
+
+    /// Writes the corners, counterclockwise.
+    #[inline(always)]
+    fn write_to(&self, corners: &mut Corners) {
+        let mut i = 0;
+        for _ in 0..self.corners.len() {
+            let c = self.corners.cyclic(i);
+            corners.push(c.at);
+            i = c.next;
+        }
     }
 }
 
 impl Overlap {
-    /// Returns the overlap of a polygon, without the common drop.
+    const EMPTY: Self = Self {
+        volume: 0.0,
+        sum: Vec2::new(0.0, 0.0),
+        count: 0.0,
+    };
+
+    /// Adds a vertex and a volume.
     #[inline(always)]
-    fn of<'v>(polygon: impl Iterator<Item = &'v Vec3> + Clone, common: f64) -> Self {
-        let mut overlap = Self {
-            volume: 0.0,
-            sum: Vec2::zeros(),
-            count: 0.0,
-            common,
-        };
-        let mut last = in_overlap(polygon.clone().last().unwrap_or(&Vec3::zeros()), common);
-        for v in polygon {
-            let v = in_overlap(v, common);
-            overlap.volume += volume_of(&last, &v);
-            overlap.sum += v.xy();
-            overlap.count += 1.0;
-            last = v;
-        }
-        overlap.volume = overlap.volume.abs();
-        overlap
+    fn add(&mut self, volume: f64, v: &Vec3) {
+        self.volume += volume;
+        self.sum += v.xy();
+        self.count += 1.0;
     }
 
-    /// Returns the overlap with the other object's, which is mirrored: the one of less volume.
+    /// Returns the overlap with the other object's: the one of less volume.
     #[inline(always)]
-    fn limited(&self, limiting: &Option<Self>) -> Self {
-        match limiting {
-            Some(limiting) if limiting.volume < self.volume => Self {
-                sum: -limiting.sum,
-                common: self.common,
-                ..*limiting
-            },
+    fn limited(&self, limit: Option<&Limit>) -> Self {
+        match limit {
+            Some(limit) if limit.overlap.volume.abs() < self.volume.abs() => limit.overlap,
             _ => *self,
         }
-    }
-
-    /// Adds a corner beyond a side.
-    #[inline(always)]
-    fn add(&mut self, from: &Vec3, at: &Vec3, to: &Vec3) {
-        let [from, at, to] = [from, at, to].map(|v| in_overlap(v, self.common));
-        self.volume += volume_of(&from, &at) + volume_of(&at, &to) - volume_of(&from, &to);
-        self.sum += at.xy();
-        self.count += 1.0;
     }
 
     /// Estimates by how far a corner beyond a side could move the centroid: by its area, or by being above the interpolated
     /// surface, by more than the common drop.
     #[inline(always)]
-    fn shift(&self, p: &Vec3, q: &Vec3, gap: f64, depth_over_tilt: f64) -> f64 {
-        let [a, b] = [p, q].map(|v| in_overlap(v, self.common));
-        let drop = 0.5 * (p.z + q.z) - self.common;
-        let raised = lesser(larger(gap / depth_over_tilt - self.common, 0.0), drop);
+    fn shift(&self, p: &Corner, q: &Corner, gap: f64, common: f64, depth_over_tilt: f64) -> f64 {
+        let (a, b) = (&p.inside, &q.inside);
+        let drop = 0.5 * (p.at.z + q.at.z) - common;
+        let raised = lesser(larger(gap / depth_over_tilt - common, 0.0), drop);
         let gain = larger(1.0 - drop + raised, 0.0) - larger(1.0 - drop, 0.0);
-        let length = offset(&a, &b).norm();
+        let length = offset(a, b).norm();
         let beyond = length * gap * (1.0 - lesser(a.z, b.z)) / larger(drop, 1.0);
         let above = a.xy().perp(&b.xy()).abs() * gain * (1.0 / 3.0);
         let missing = larger(beyond, above);
         // The corner may be beyond either end.
         let lever = ((a.xy() + b.xy()) * 0.5 - self.sum / self.count).norm() + length * (1.0 / 6.0);
-        missing * lever / (self.volume + missing)
+        missing * lever / (self.volume.abs() + missing)
     }
 }
 
