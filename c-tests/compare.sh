@@ -11,6 +11,7 @@
 #     --no-times   measure no times: fewer calls of the callbacks
 #     --libccd F   the libccd to compare with (default: the program's; where that is this library, the system's)
 #     --library F  a built libccd.so of this library (default: built now)
+#     --recorder D  a folder with this script's own programs (default: compiled now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART, or load it later, as in `compare.sh python
 # app.py`. Its exit code is this command's; 125: the program could not be run. Runs setup.sh itself.
 
@@ -32,14 +33,16 @@ base=theirs
 keep=
 libccd=
 library=
+recorder=
 fields=
+to_build=
 times=1
 while [ $# -gt 0 ]; do
     case $1 in
     --swap) base=ours ;;
     --no-times) times=0 ;;
     --fields) fields=1 ;; # for the tables of engines/: one line on stdout
-    --every | --keep | --libccd | --library)
+    --every | --keep | --libccd | --library | --recorder)
         [ $# -ge 2 ] || usage
         eval "${1#--}=\$2"
         shift
@@ -90,8 +93,12 @@ if [ -z "$library" ]; then
     library=$target/release/libccd.so
 fi
 [ -r "$library" ] || fail "$library: no file"
-mkdir -p "$target/compare"
-work=$(cd "$target/compare" && pwd)
+if [ -z "$recorder" ]; then
+    mkdir -p "$target/compare"
+    recorder=$target/compare
+    to_build=1
+fi
+work=$(cd "$recorder" && pwd)
 
 # build COMPILER OUT FLAG...: unless OUT is newer than all sources; under a name of its own first, for others may be
 # running the old one
@@ -103,7 +110,7 @@ build() {
     mv "$work/$out.$$" "$work/$out"
 }
 
-(
+[ -z "$to_build" ] || (
     cd "$here/tools/compare"
     build c++ catch.o -c -fPIC -fvisibility=hidden catch.cpp
     build cc compare.so -shared -fPIC -fexceptions -fvisibility=hidden "$work/catch.o" query.c judge_query.c write_case.c preload.c -lstdc++ -lm -ldl -lpthread
@@ -122,8 +129,8 @@ fi
 [ -n "$libccd" ] && [ -r "$libccd" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
 ! grep -q ccdImplementation "$libccd" || fail "$libccd is this library, installed: name a libccd with --libccd FILE"
 
-# Not in /tmp, which may be mounted noexec.
-counts=$(mktemp -d "$work/run.XXXXXX")
+# Not in /tmp, which may be mounted noexec, unless this folder is another user's.
+counts=$(mktemp -d "$work/run.XXXXXX" 2>/dev/null) || counts=$(mktemp -d)
 trap 'rm -rf "$counts"' EXIT
 cp -L "$libccd" "$counts/theirs.so"
 cp -L "$library" "$counts/ours.so"

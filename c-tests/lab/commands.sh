@@ -237,6 +237,17 @@ try.sh trixie
 apt-get install ./libwarmccd2_*.deb
 apt-get install libccd2
 END
+elsewhere "linux-inside.sh, in the archive" <<'END'
+linux.sh OUT
+sh cmake/packages/linux.sh OUT
+try-linux.sh SUITE ARCHIVE
+./run-on-warmccd.sh PROGRAM
+LD_LIBRARY_PATH=$PWD/lib PROGRAM
+cc example.c -Iinclude lib/libccd.a -Wl,--gc-sections -lm -o example && ./example
+cc example.c -Iinclude lib/libccd.so.2 -lm -Wl,-rpath,"$PWD/lib" -o example && ./example
+cc example.c $(PKG_CONFIG_PATH=$PWD/lib/pkgconfig pkg-config --cflags --libs ccd) -Wl,-rpath,"$PWD/lib" -o example && ./example
+cmake -S . -B build -DCMAKE_PREFIX_PATH=/path/to/this/folder
+END
 elsewhere ".ci/run" <<'END'
 cargo test
 sh c-tests/test.sh

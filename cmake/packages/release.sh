@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-#   release.sh OUT   makes the source archive, the Debian packages and their checksums
+#   release.sh OUT   makes the source archive, the Debian packages, the archive for any Linux and their checksums
 #
 # From the commit that is checked out. The packages are made and tried in clean chroots
 # of Debian 12 and 13. As root; chroot.sh says more.
@@ -21,6 +21,10 @@ archive=$(sh "$here/source.sh" "$out")
 for suite in bookworm trixie; do
     sh "$here/try.sh" "$suite" "$archive" "$out"
 done
+built=$(sh "$here/linux.sh" "$out" | tail -n 1)
+for suite in bookworm trixie; do
+    sh "$here/try-linux.sh" "$suite" "$built"
+done
 cd "$out"
-sha256sum -- *.tar.xz *.deb >SHA256SUMS
+sha256sum -- *.tar.xz *.tar.gz *.deb >SHA256SUMS
 cat SHA256SUMS

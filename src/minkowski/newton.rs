@@ -111,7 +111,9 @@ fn is_smooth_between<const N: usize>(upper: &SupportPlane, set: &VertexSet<N>, k
 /// decomposition can panic.
 fn flattest_axis(m: &Matrix2<f64>) -> Vector2<f64> {
     let (a, b, c) = (m.m11, m.m12, m.m22);
-    let least = 0.5 * (a + c) - (0.5 * (a - c)).hypot(b);
+    let half = 0.5 * (a - c);
+    // Not by `hypot`: libm's rounds as the C library of the machine does.
+    let least = 0.5 * (a + c) - (half * half + b * b).sqrt();
     // Both are eigenvectors; the longer one is more exact.
     let (p, q) = (Vector2::new(b, least - a), Vector2::new(least - c, b));
     let longer = if p.norm_squared() > q.norm_squared() {

@@ -134,6 +134,20 @@ fn no_panic_is_linked() {
     );
 }
 
+/// Checks that the shared library runs on glibc 2.28, as `cmake/packages/linux.sh` says.
+#[test]
+#[cfg(target_env = "gnu")]
+fn glibc_of_2018_is_enough() {
+    let symbols = output("objdump", &["-T"], &ours("libccd.so"));
+    let versions: Vec<u32> = symbols
+        .split("GLIBC_2.")
+        .skip(1)
+        .filter_map(|rest| rest.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok())
+        .collect();
+    assert!(versions.len() > 5, "{symbols}");
+    assert!(versions.iter().all(|minor| *minor <= 28), "{symbols}");
+}
+
 /// Checks that no function of the library calls an exported one, and that the dynamic linker has none to bind: another libccd
 /// in the process, or an object that is preloaded, would get the call.
 #[test]
