@@ -75,5 +75,5 @@ pub fn run() {
     super::front::draw(&Path::new(OUT).join("front.svg"), &libraries.machine, &rows);
     let table = table(&rows);
     println!("{table}");
-    write_between_marks("README.md", "table engines", &format!("{table}\n"));
+    write_between_marks("include/README.md", "table engines", &format!("{table}\n"));
 }

@@ -82,7 +82,7 @@ fn screens() {
 fn steps() {
     let table = format!("{}\n\n{}.\n", tables::step_table(3, 8), harness::machine());
     println!("{table}");
-    write_between_marks("README.md", "steps", &table);
+    write_between_marks("include/README.md", "steps", &table);
 }
 
 /// Prints what FCL costs by use, and writes it into the page of the engines.

@@ -187,7 +187,7 @@ fn include_readme_c_program() {
     assert_depth_of_the_box(&program.run([""; 0]).stdout);
 }
 
-/// Runs README.md's two commands that link its program, in a folder with the files that they name.
+/// Runs the two commands of README.md and include/README.md that link the program, in a folder with the files that they name.
 #[test]
 #[cfg(not(feature = "single"))]
 fn readme_link_commands() {
@@ -201,8 +201,8 @@ fn readme_link_commands() {
     link(&library.dir, "target/release");
     link(&library.dir.join("libccd.so"), "target/swap/libccd.so.2");
     fs::copy(program_of("readme-linked", "README.md", "c"), here.join("target/program.c")).expect("a copy");
-    let page = page("README.md");
-    let lines = page
+    let pages = page("README.md") + &page("include/README.md");
+    let lines = pages
         .split(['`', '\n'])
         .filter(|code| code.starts_with("cc target/program.c "))
         .map(|code| code.trim_end_matches(" && target/program"));

@@ -1,0 +1,78 @@
+#!/bin/sh
+# SPDX-FileCopyrightText: 2026 The warmccd developers
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# Runs ODE's own demos on Debian's libode without drawing (3 minutes): demo_convex, and ode_rows, which must end on this
+# library and stop at an assertion on libccd; and five demos on libccd's answers, one query in ten judged, of which this
+# library must have none wrong. Prints the figures.
+#   ode_demos.sh           ODE's source is fetched by `apt-get source`
+#   ODE_SOURCE=DIR ode_demos.sh   it is there, ODE 0.16
+
+set -eu
+cd "$(dirname "$0")/../.."
+mkdir -p target/c-tests/ode-demos
+work=$(cd target/c-tests/ode-demos && pwd)
+
+# With lists of its own: the machine's may name no sources.
+fetch() {
+    apt=$work/apt
+    mkdir -p "$apt/parts" "$apt/lists/partial" "$apt/archives/partial"
+    . /etc/os-release
+    cat >"$apt/parts/source.sources" <<END
+Types: deb-src
+URIs: http://deb.debian.org/debian
+Suites: $VERSION_CODENAME
+Components: main
+Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
+END
+    set -- -q -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$apt/parts" -o Dir::State::lists="$apt/lists" \
+        -o Dir::Cache="$apt" -o APT::Sandbox::User=
+    apt-get "$@" update >&2
+    (cd "$apt" && apt-get "$@" source --download-only ode >&2)
+    mkdir -p "$work/source"
+    tar xzf "$apt"/ode_0.16*.orig.tar.gz -C "$work/source" --strip-components=1
+}
+source=${ODE_SOURCE:-$work/source}
+[ -n "${ODE_SOURCE:-}" ] || [ -d "$source/ode/demo" ] || fetch
+
+# --- build -----------------------------------------------------------------------------
+
+sh c-tests/setup.sh >&2
+cargo build --release --lib >&2
+library=$(cd "${CARGO_TARGET_DIR:-target}/release" && pwd)/libccd.so
+mkdir -p "$work/ours" "$work/include"
+ln -sf "$library" "$work/ours/libccd.so.2"
+# Debian's ode.h knows its precision, the source's does not.
+cp -r "$source/include/drawstuff" "$work/include"
+"${CC:-cc}" -O1 -c c-tests/lab/engines/drawstuff.c -o "$work/drawstuff.o"
+"${CC:-cc}" -O1 c-tests/lab/engines/ode_rows.c -lode -lccd -lm -o "$work/ode_rows"
+demos="moving_convex boxstack motion heightfield trimesh"
+for demo in convex $demos; do
+    "${CXX:-c++}" -w -O1 '-DDRAWSTUFF_TEXTURE_PATH="."' -I"$work/include" -I"$source/ode/demo" \
+        "$source/ode/demo/demo_$demo.cpp" "$work/drawstuff.o" -lode -lccd -o "$work/demo_$demo"
+done
+
+# --- run -------------------------------------------------------------------------------
+
+# What the keys drop: v a hull, y a cylinder, c a capsule, b a box, x a composite.
+export DEMO_STEPS=1500 DEMO_KEYS=vyvcyvxbyvcyvcyvcyvcyvcyvcyvcyvccyy
+failed=0
+for program in demo_convex ode_rows; do
+    on_libccd=0
+    "$work/$program" 500 >"$work/$program.libccd" 2>&1 || on_libccd=$?
+    if LD_LIBRARY_PATH=$work/ours "$work/$program" 500 >"$work/$program.ours" 2>&1; then here="ends"; else here="exit code $?"; fi
+    echo "$program: on libccd exit code $on_libccd, $(sed -n 's/.*\(assertion .*\)/\1/p' "$work/$program.libccd"); here $here"
+    [ "$here" = ends ] || failed=1
+done
+for demo in $demos; do
+    sh c-tests/compare.sh --every 10 --no-times --library "$library" "$work/demo_$demo" >"$work/$demo.out" 2>"$work/$demo.screen"
+done
+# The rows of the table of answers: missed, false, broken, over 1 %, unsound.
+for who in libccd "this library"; do
+    for demo in $demos; do
+        awk -v who="$who" '/missed  false/ { table = 1 } table && index($0, who) == 1 { sub(who, ""); print }' "$work/$demo.screen"
+    done | awk -v who="$who" '{ missed += $1; spurious += $2; wrong += $1 + $2 + $3 + $4 + $5 }
+        END { printf "%s: %d missed, %d false, %d wrong in all\n", who, missed, spurious, wrong; exit NR != 5 || (who != "libccd" && wrong) }' || failed=1
+done
+cat "$work"/*.screen | awk '/^ccd.*%/ { gsub(",", ""); n += $2; judged += $5 } END { printf "%d queries, %d of them judged\n", n, judged }'
+exit $failed
