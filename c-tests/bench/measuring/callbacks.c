@@ -193,11 +193,11 @@ void bench_support_placed(const void *obj, const ccd_vec3_t *dir, ccd_vec3_t *ou
     for (int i = 0; i < 3; i++)
         d[i] = r[i] * w[0] + r[3 + i] * w[1] + r[6 + i] * w[2];
     best = m->last;
-    value = shape_vertex_value(&m->shape, best, d);
+    value = ccdShapeHullValue(m->shape.verts, best, d);
     do {
         from = best;
         for (int k = m->first[from]; k < m->first[from + 1]; k++) {
-            const ccd_real_t x = shape_vertex_value(&m->shape, m->neighbours[k], d);
+            const ccd_real_t x = ccdShapeHullValue(m->shape.verts, m->neighbours[k], d);
             if (x > value) {
                 value = x;
                 best = m->neighbours[k];
