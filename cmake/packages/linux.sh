@@ -37,7 +37,7 @@ compile() {
     "$compiler" -O2 -Wall -Wextra -s -Ic-tests -Iinclude "$@" -o "$object"
 }
 tools=c-tests/tools/compare
-compile c++ "$work/catch.o" -c -fPIC -fvisibility=hidden $tools/catch.cpp
+compile c++ "$work/catch.o" -c -fPIC -fvisibility=hidden -include cmake/packages/glibc.h $tools/catch.cpp
 # libdl and libpthread by their files: their development names are empty archives since glibc 2.34, and a machine with
 # an older one finds these functions nowhere else.
 for library in libdl.so.2 libpthread.so.0; do
@@ -52,7 +52,7 @@ compile cc "$tree/recorder/screen" -static $tools/summary.c -lm
 cp c-tests/compare.sh "$tree/recorder"
 mkdir "$tree/recorder/tools"
 cp c-tests/tools/libccd.sh "$tree/recorder/tools"
-cp cmake/packages/run-on-warmccd.sh "$tree"
+install -m 755 cmake/packages/run-on-warmccd.sh "$tree"
 cp cmake/packages/linux.md "$tree/README.md"
 awk '/^```c$/ { inside = 1; next } /^```/ && inside { exit } inside' README.md >"$tree/example.c"
 
