@@ -219,6 +219,8 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
             if side == MAX_CORNERS {
                 break;
             }
+            // Rust 1.85 does not see that the index is bounded.
+            let side = side.min(MAX_CORNERS - 1);
             let p = found.corners.cyclic(side);
             let q = found.corners.cyclic(p.next);
             // The overlap has grown since the estimate.
