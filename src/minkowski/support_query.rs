@@ -318,8 +318,8 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     #[cold]
     #[inline(never)]
     pub fn confirm(&mut self, exact: &SupportPlane) -> Result<(), Fault> {
-        // If the tolerance allows a tilt, the plane was chosen beside a tilted one.
-        if self.has_tilt() {
+        // If the tolerance allows a tilt, the plane was chosen beside a tilted one; single precision has none.
+        if !HAS_TILT || self.has_tilt() {
             return Ok(());
         }
         let tilted = self.evaluate_tilted(&exact.dir, MIN_TILT_RAD)?;
