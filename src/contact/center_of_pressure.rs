@@ -173,7 +173,7 @@ fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(true)
 }
 
-/// What a contact has of an object.
+/// The outline of one object at a contact.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Feature {
     /// The polygon is a point, or its fan has no area: the deepest point is the center of pressure.

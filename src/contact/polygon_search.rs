@@ -78,7 +78,7 @@ struct Overlap {
     count: f64,
 }
 
-/// What limits the search of the larger object.
+/// The outline of the smaller object, beyond which the larger one is not searched.
 pub struct Limit {
     /// The outline of the smaller object, mirrored, beyond which no corner matters.
     outline: FixedVec<Vec2, { Fan::CAPACITY }>,
