@@ -230,6 +230,18 @@ struct FanRay {
 }
 
 impl FanRay {
+    /// Returns the ray through a vertex above a plane.
+    #[inline(always)]
+    fn on_plane(v: &Vec3) -> Self {
+        let active_bound = if v.z > 1.0 { 2 } else { 0 };
+        Self {
+            at: v.xy(),
+            bounds: [1.0, 0.0, v.z],
+            active_bound,
+            end: outline_at(v.xy(), larger(v.z, 1.0), v.z),
+        }
+    }
+
     /// Returns the ray through vertex `v` of fan `own`, which passes between the vertices `p` and `q` of the other
     /// fan. `pv`, `vq` and `pq`: the cross products of these vertices.
     #[inline(always)]
@@ -310,22 +322,13 @@ impl PressureSum {
     /// Adds a fan on a larger plane.
     #[inline(always)]
     fn add_fan_on_plane(&mut self, fan: &Fan) {
-        let end_at = |v: &Vec3| outline_at(v.xy(), larger(v.z, 1.0), v.z);
-        let mut vertices = fan.vertices.iter().take(fan.len + 1);
-        let Some(mut p) = vertices.next() else {
+        let mut rays = fan.vertices.iter().take(fan.len + 1).map(FanRay::on_plane);
+        let Some(mut last) = rays.next() else {
             return;
         };
-        let mut start = end_at(p);
-        for q in vertices {
-            let end = end_at(q);
-            if (p.z > 1.0) != (q.z > 1.0) {
-                let t = (1.0 - p.z) / (q.z - p.z);
-                let middle = Vec3::new(p.x + (q.x - p.x) * t, p.y + (q.y - p.y) * t, 0.0);
-                self.add(&start, &middle);
-                start = middle;
-            }
-            self.add(&start, &end);
-            (p, start) = (q, end);
+        for next in rays {
+            self.add_cone(&last, &next);
+            last = next;
         }
     }
 

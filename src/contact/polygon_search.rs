@@ -32,8 +32,6 @@ use crate::minkowski::support::{Fault, SupportMap};
 pub const MAX_CORNERS: usize = 12;
 /// Largest number of queries of a search: each corner is found once and each side closed once.
 const MAX_QUERIES: usize = 2 * MAX_CORNERS;
-/// Largest number of steps: a side may be limited once by the other outline before it is queried.
-const MAX_STEPS: usize = 2 * MAX_QUERIES;
 /// Least drop of both ends of a side, in depths, beyond which no corner is in the overlap: between two directions tilted by T
 /// a surface whose radius is the extent rises by TILT_FACTOR² / 2 depths at most.
 const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
@@ -205,39 +203,18 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
         for i in 0..found.corners.len() {
             self.open_side(found, i);
         }
-        let mut overlap = self.lower_common_drop(found, limit);
-        let tolerance = CORNER_SHIFT_REL * self.extent;
-        for _ in 0..MAX_STEPS {
-            let (mut side, mut most) = (MAX_CORNERS, tolerance);
-            for (i, shift) in found.shifts.iter().enumerate() {
-                (side, most) = if *shift > most {
-                    (i, *shift)
-                } else {
-                    (side, most)
-                };
-            }
-            if side == MAX_CORNERS {
+        self.lower_common_drop(found, limit);
+        for _ in 0..MAX_QUERIES {
+            let side = found.side_that_matters(self.extent);
+            let Some(p) = found.corners.get(side) else {
                 break;
-            }
-            // Rust 1.85 does not see that the index is bounded.
-            let side = side.min(MAX_CORNERS - 1);
-            let p = found.corners.cyclic(side);
-            let q = found.corners.cyclic(p.next);
-            // The overlap has grown since the estimate.
-            let reach = limit.map_or(p.gap, |limit| {
-                lesser(limit.reach_beyond(&p.at, &q.at), p.gap)
-            });
-            let shift = overlap.shift(p, q, reach, found.common, self.depth_over_tilt);
-            if !(shift > tolerance) {
-                found.shifts[side] = shift;
-                continue;
-            }
+            };
+            let q = found.corners.at(p.next);
             let out = p.out;
-            let at = self.query(object, out)?;
             let level = larger(self.height(&p.at, &out), self.height(&q.at, &out));
+            let at = self.query(object, out)?;
             if !(self.height(&at, &out) > level + 2.0 * self.vertex_offset) {
-                found.shifts[side] = 0.0;
-                found.corners.cyclic_mut(side).gap = 0.0;
+                found.close(side);
                 continue;
             }
             let new = found.corners.len();
@@ -248,45 +225,54 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
             self.open_side(found, side);
             self.open_side(found, new);
             if COMMON_DROP_FACTOR * at.z < found.common {
-                overlap = self.lower_common_drop(found, limit);
+                self.lower_common_drop(found, limit);
             } else {
                 found.add_volume(side);
-                overlap = found.own.limited(limit);
-                self.estimate_shift(found, side, &overlap);
-                self.estimate_shift(found, new, &overlap);
+                let overlap = found.own.limited(limit);
+                self.estimate_shift(found, side, limit, &overlap);
+                self.estimate_shift(found, new, limit, &overlap);
             }
         }
         Ok(())
     }
 
-    /// Sets the drop that all corners have in common, and what depends on it. Returns the overlap.
+    /// Sets the drop that all corners have in common, and what depends on it.
     #[inline(always)]
-    fn lower_common_drop(&self, found: &mut Found, limit: Option<&Limit>) -> Overlap {
+    fn lower_common_drop(&self, found: &mut Found, limit: Option<&Limit>) {
         found.set_common_drop();
         let overlap = found.own.limited(limit);
         for i in 0..found.corners.len() {
-            self.estimate_shift(found, i, &overlap);
+            self.estimate_shift(found, i, limit, &overlap);
         }
-        overlap
     }
 
-    /// Estimates by how much a corner beyond a side could move the centroid.
+    /// Estimates by how much a corner beyond a side could move the centroid, within the limit.
     #[inline(always)]
-    fn estimate_shift(&self, found: &mut Found, i: usize, overlap: &Overlap) {
-        let p = found.corners.cyclic(i);
-        let q = found.corners.cyclic(p.next);
-        let shift = overlap.shift(p, q, p.gap, found.common, self.depth_over_tilt);
+    fn estimate_shift(
+        &self,
+        found: &mut Found,
+        i: usize,
+        limit: Option<&Limit>,
+        overlap: &Overlap,
+    ) {
+        let p = found.corners.at(i);
+        let q = found.corners.at(p.next);
+        let gap = match limit {
+            Some(limit) if p.gap > 0.0 => lesser(limit.reach_beyond(&p.at, &q.at), p.gap),
+            _ => p.gap,
+        };
+        let shift = overlap.shift(p, q, gap, found.common, self.depth_over_tilt);
         found.shifts[i.min(MAX_CORNERS - 1)] = shift;
     }
 
     /// Finds the direction out of a side, and by how much a corner beyond it may be higher than its ends, at most.
     #[inline(always)]
     fn open_side(&self, found: &mut Found, i: usize) {
-        let p = found.corners.cyclic(i);
-        let q = found.corners.cyclic(p.next);
+        let p = found.corners.at(i);
+        let q = found.corners.at(p.next);
         let out = outwards(&p.at, &q.at, self.depth_over_tilt, 0.0);
         let gap = self.gap_beyond(p, q, out);
-        let side = found.corners.cyclic_mut(i);
+        let side = found.corners.at_mut(i);
         (side.out, side.gap) = (out, gap);
     }
 
@@ -311,6 +297,25 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
 }
 
 impl Found {
+    /// Returns the side whose corner could move the centroid most, if that matters; else [`MAX_CORNERS`].
+    #[inline(always)]
+    fn side_that_matters(&self, extent: f64) -> usize {
+        let (mut side, mut most) = (MAX_CORNERS, CORNER_SHIFT_REL * extent);
+        for (i, shift) in self.shifts.iter().enumerate() {
+            if *shift > most {
+                (side, most) = (i, *shift);
+            }
+        }
+        side
+    }
+
+    /// Closes a side: no corner is beyond it.
+    #[inline(always)]
+    fn close(&mut self, side: usize) {
+        self.corners.at_mut(side).gap = 0.0;
+        self.shifts[side.min(MAX_CORNERS - 1)] = 0.0;
+    }
+
     /// Adds the vertex of one of the first directions, unless it is the last or the first corner.
     #[inline(always)]
     fn add_first(&mut self, at: Vec3, out: Vec2, vertex_offset: f64) {
@@ -347,7 +352,7 @@ impl Found {
     #[inline(always)]
     fn insert(&mut self, side: usize, at: Vec3, out: Vec2) {
         let new = self.corners.len();
-        let from = self.corners.cyclic_mut(side);
+        let from = self.corners.at_mut(side);
         let next = core::mem::replace(&mut from.next, new);
         self.corners.push(Corner {
             at,
@@ -369,7 +374,7 @@ impl Found {
         }
         self.own = Overlap::EMPTY;
         for p in self.corners.iter() {
-            let q = &self.corners.cyclic(p.next).inside;
+            let q = &self.corners.at(p.next).inside;
             self.own.add(volume_of(&p.inside, q), q);
         }
     }
@@ -377,12 +382,12 @@ impl Found {
     /// Adds the corner after a side to the overlap.
     #[inline(always)]
     fn add_volume(&mut self, side: usize) {
-        let from = self.corners.cyclic(side);
-        let at = self.corners.cyclic(from.next);
-        let to = self.corners.cyclic(at.next);
-        let [from, at, to] = [&from.inside, &at.inside, &to.inside];
-        let volume = volume_of(from, at) + volume_of(at, to) - volume_of(from, to);
-        self.own.add(volume, at);
+        let from = self.corners.at(side);
+        let at = self.corners.at(from.next);
+        let to = self.corners.at(at.next);
+        let [from, at, to] = [from.inside, at.inside, to.inside];
+        let volume = volume_of(&from, &at) + volume_of(&at, &to) - volume_of(&from, &to);
+        self.own.add(volume, &at);
     }
 
     /// Writes the corners, counterclockwise.
@@ -390,7 +395,7 @@ impl Found {
     fn write_to(&self, corners: &mut Corners) {
         let mut i = 0;
         for _ in 0..self.corners.len() {
-            let c = self.corners.cyclic(i);
+            let c = self.corners.at(i);
             corners.push(c.at);
             i = c.next;
         }
