@@ -8,9 +8,12 @@
 //! 2. Estimate for each side how far a corner beyond it could move the centroid of the overlap. The corner is in the triangle
 //!    between the side and the support lines of the directions that returned its ends; or it is on the side but higher than
 //!    both, by what these directions allow. It is an estimate, because corners differ in their drops.
-//! 3. Evaluate the side with the largest shift, along the direction in which both of its ends have the same height. A higher
-//!    vertex is a new corner; otherwise the side is closed.
-//! 4. End where no side could move the centroid by more than [`CORNER_SHIFT_REL`], or at [`MAX_CORNERS`].
+//! 3. Go around the sides. Where the shift is more than [`CORNER_SHIFT_REL`], evaluate the direction in which both ends have
+//!    the same height. A vertex that is higher and enlarges the overlap is a new corner; otherwise the side is closed.
+//! 4. End after a round without a new corner, or at [`MAX_CORNERS`].
+//!
+//! A round takes the sides in the order in which they were found, not the one with the largest shift first: those of a disc
+//! are all alike, and their rounding errors would choose which of them still become corners.
 //!
 //! Of the larger object only what cuts the outline of the smaller one matters. It is a plane if vertices in its support plane
 //! contain that outline.
@@ -22,7 +25,9 @@
 use crate::contact::fan::Fan;
 use crate::contact::feature::{ContactQuery, four_directions};
 use crate::contact::frame::outwards;
-use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, DROP_TOL, TILT_FACTOR};
+use crate::contact::tuning::{
+    COMMON_DROP_FACTOR, CORNER_SHIFT_REL, DROP_TOL, LEAST_GROWTH, TILT_FACTOR,
+};
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
@@ -30,8 +35,8 @@ use crate::minkowski::support::{Fault, SupportMap};
 
 /// Largest number of corners of a polygon.
 pub const MAX_CORNERS: usize = 12;
-/// Largest number of queries of a search: each corner is found once and each side closed once.
-const MAX_QUERIES: usize = 2 * MAX_CORNERS;
+/// Largest number of rounds: each but the last finds a corner.
+const MAX_ROUNDS: usize = MAX_CORNERS;
 /// Least drop of both ends of a side, in depths, beyond which no corner is in the overlap: between two directions tilted by T
 /// a surface whose radius is the extent rises by TILT_FACTOR² / 2 depths at most.
 const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
@@ -56,8 +61,6 @@ struct Corner {
 /// The corners found so far, in the order of finding; `next` is their order around the polygon.
 struct Found {
     corners: FixedVec<Corner, MAX_CORNERS>,
-    /// By how much a corner beyond each side could move the centroid, metres; not more than 0 if there is none.
-    shifts: [f64; MAX_CORNERS],
     /// The drop that all corners have in common.
     common: f64,
     own: Overlap,
@@ -172,7 +175,6 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
     ) -> Result<bool, Fault> {
         let mut found = Found {
             corners: FixedVec::default(),
-            shifts: [0.0; MAX_CORNERS],
             common: 1.0,
             own: Overlap::EMPTY,
         };
@@ -192,7 +194,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
         Ok(true)
     }
 
-    /// Searches beyond the sides of the first corners.
+    /// Searches beyond the sides in rounds, until a round finds no corner.
     #[inline(always)]
     fn search_sides(
         &self,
@@ -203,66 +205,65 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
         for i in 0..found.corners.len() {
             self.open_side(found, i);
         }
-        self.lower_common_drop(found, limit);
-        for _ in 0..MAX_QUERIES {
-            let side = found.side_that_matters(self.extent);
-            let Some(p) = found.corners.get(side) else {
-                break;
-            };
-            let q = found.corners.at(p.next);
-            let out = p.out;
-            let level = larger(self.height(&p.at, &out), self.height(&q.at, &out));
-            let at = self.query(object, out)?;
-            if !(self.height(&at, &out) > level + 2.0 * self.vertex_offset) {
-                found.close(side);
-                continue;
+        found.set_common_drop();
+        let mut overlap = found.own.limited(limit);
+        for _ in 0..MAX_ROUNDS {
+            let count = found.corners.len();
+            for side in 0..count {
+                let p = found.corners.at(side);
+                let q = found.corners.at(p.next);
+                if !self.matters(p, q, limit, found.common, &overlap) {
+                    continue;
+                }
+                let out = p.out;
+                let at = self.query(object, out)?;
+                let level = larger(self.height(&p.at, &out), self.height(&q.at, &out));
+                let inside = in_overlap(&at, found.common);
+                let volume = volume_beyond(&p.inside, &inside, &q.inside);
+                if !(self.height(&at, &out) > level + 2.0 * self.vertex_offset
+                    && volume.abs() > LEAST_GROWTH * overlap.volume.abs())
+                {
+                    found.corners.at_mut(side).gap = 0.0;
+                    continue;
+                }
+                let new = found.corners.len();
+                if new == MAX_CORNERS {
+                    return Ok(());
+                }
+                found.insert(side, at, inside, out);
+                self.open_side(found, side);
+                self.open_side(found, new);
+                if COMMON_DROP_FACTOR * at.z < found.common {
+                    found.set_common_drop();
+                } else {
+                    found.own.add(volume, &inside);
+                }
+                overlap = found.own.limited(limit);
             }
-            let new = found.corners.len();
-            if new == MAX_CORNERS {
+            if found.corners.len() == count {
                 break;
-            }
-            found.insert(side, at, out);
-            self.open_side(found, side);
-            self.open_side(found, new);
-            if COMMON_DROP_FACTOR * at.z < found.common {
-                self.lower_common_drop(found, limit);
-            } else {
-                found.add_volume(side);
-                let overlap = found.own.limited(limit);
-                self.estimate_shift(found, side, limit, &overlap);
-                self.estimate_shift(found, new, limit, &overlap);
             }
         }
         Ok(())
     }
 
-    /// Sets the drop that all corners have in common, and what depends on it.
+    /// Returns whether a corner beyond a side could move the centroid, within the limit.
     #[inline(always)]
-    fn lower_common_drop(&self, found: &mut Found, limit: Option<&Limit>) {
-        found.set_common_drop();
-        let overlap = found.own.limited(limit);
-        for i in 0..found.corners.len() {
-            self.estimate_shift(found, i, limit, &overlap);
-        }
-    }
-
-    /// Estimates by how much a corner beyond a side could move the centroid, within the limit.
-    #[inline(always)]
-    fn estimate_shift(
+    fn matters(
         &self,
-        found: &mut Found,
-        i: usize,
+        p: &Corner,
+        q: &Corner,
         limit: Option<&Limit>,
+        common: f64,
         overlap: &Overlap,
-    ) {
-        let p = found.corners.at(i);
-        let q = found.corners.at(p.next);
+    ) -> bool {
         let gap = match limit {
             Some(limit) if p.gap > 0.0 => lesser(limit.reach_beyond(&p.at, &q.at), p.gap),
             _ => p.gap,
         };
-        let shift = overlap.shift(p, q, gap, found.common, self.depth_over_tilt);
-        found.shifts[i.min(MAX_CORNERS - 1)] = shift;
+        gap > 0.0
+            && overlap.shift(p, q, gap, common, self.depth_over_tilt)
+                > CORNER_SHIFT_REL * self.extent
     }
 
     /// Finds the direction out of a side, and by how much a corner beyond it may be higher than its ends, at most.
@@ -297,25 +298,6 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
 }
 
 impl Found {
-    /// Returns the side whose corner could move the centroid most, if that matters; else [`MAX_CORNERS`].
-    #[inline(always)]
-    fn side_that_matters(&self, extent: f64) -> usize {
-        let (mut side, mut most) = (MAX_CORNERS, CORNER_SHIFT_REL * extent);
-        for (i, shift) in self.shifts.iter().enumerate() {
-            if *shift > most {
-                (side, most) = (i, *shift);
-            }
-        }
-        side
-    }
-
-    /// Closes a side: no corner is beyond it.
-    #[inline(always)]
-    fn close(&mut self, side: usize) {
-        self.corners.at_mut(side).gap = 0.0;
-        self.shifts[side.min(MAX_CORNERS - 1)] = 0.0;
-    }
-
     /// Adds the vertex of one of the first directions, unless it is the last or the first corner.
     #[inline(always)]
     fn add_first(&mut self, at: Vec3, out: Vec2, vertex_offset: f64) {
@@ -350,13 +332,13 @@ impl Found {
 
     /// Inserts a corner into a side.
     #[inline(always)]
-    fn insert(&mut self, side: usize, at: Vec3, out: Vec2) {
+    fn insert(&mut self, side: usize, at: Vec3, inside: Vec3, out: Vec2) {
         let new = self.corners.len();
         let from = self.corners.at_mut(side);
         let next = core::mem::replace(&mut from.next, new);
         self.corners.push(Corner {
             at,
-            inside: in_overlap(&at, self.common),
+            inside,
             first: out,
             last: out,
             next,
@@ -377,17 +359,6 @@ impl Found {
             let q = &self.corners.at(p.next).inside;
             self.own.add(volume_of(&p.inside, q), q);
         }
-    }
-
-    /// Adds the corner after a side to the overlap.
-    #[inline(always)]
-    fn add_volume(&mut self, side: usize) {
-        let from = self.corners.at(side);
-        let at = self.corners.at(from.next);
-        let to = self.corners.at(at.next);
-        let [from, at, to] = [from.inside, at.inside, to.inside];
-        let volume = volume_of(&from, &at) + volume_of(&at, &to) - volume_of(&from, &to);
-        self.own.add(volume, &at);
     }
 
     /// Writes the corners, counterclockwise.
@@ -448,6 +419,12 @@ impl Overlap {
 #[inline(always)]
 pub fn volume_of(a: &Vec3, b: &Vec3) -> f64 {
     a.xy().perp(&b.xy()) * (1.0 - (a.z + b.z) * (1.0 / 3.0))
+}
+
+/// Returns twice the volume, in depths, by which a vertex beyond the side from `a` to `b` enlarges the overlap.
+#[inline(always)]
+fn volume_beyond(a: &Vec3, at: &Vec3, b: &Vec3) -> f64 {
+    volume_of(a, at) + volume_of(at, b) - volume_of(a, b)
 }
 
 /// Returns a vertex without the common drop, and at the end of the overlap if it is beyond it.
