@@ -9,6 +9,7 @@
 
 use core::fmt;
 
+use crate::contact::face::MAX_CONTACTS;
 use crate::contact::manifold;
 use crate::contact::manifold_cache;
 use crate::ffi::arena::LargeBuffers;
@@ -402,7 +403,7 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
     if !(slop >= 0.0) || room.is_empty() {
         return Err(Error::ContactOptions);
     }
-    let max = room.len().min(manifold::MAX_CONTACTS);
+    let max = room.len().min(MAX_CONTACTS);
     let cache = cache.map(|cache| &mut cache.0);
     let manifold = manifold::contacts(
         &support_of(a),

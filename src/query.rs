@@ -29,12 +29,13 @@ use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::general_position::{
-    HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, in_general_position, tilted_in_plane,
+    HAS_TILT, MAX_TILT_RAD, in_general_position, tilted_in_plane,
 };
 use crate::minkowski::separating_axis::test_axis;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Direction, Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::GAP_REL;
+use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::minkowski::warm_start::WarmStart;
 use crate::paper::gao::{self, Until};

@@ -46,7 +46,8 @@
 use crate::contact::fan::{Fan, area2};
 use crate::contact::feature::ContactQuery;
 use crate::contact::frame::ContactFrame;
-use crate::contact::polygon_search::{Corners, Limit};
+use crate::contact::limit::Limit;
+use crate::contact::overlap::Corners;
 use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE, MAX_KNOWN, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};

@@ -4,7 +4,7 @@
 //! The vertices of a feature, in order around the deepest point.
 
 use crate::contact::feature::four_directions;
-use crate::contact::polygon_search::{Corners, MAX_CORNERS, in_overlap, volume_of};
+use crate::contact::overlap::{Corners, MAX_CORNERS, in_overlap, volume_of};
 use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};

@@ -14,7 +14,8 @@
 //! 4. *Reduction.* Keep the deepest point and those that span the largest area with it. Points with old ids are kept
 //!    instead if they span at least nine tenths of that area.
 
-use crate::contact::face::{Face, MAX_CORNERS, faces};
+use crate::contact::face::{Face, MAX_CONTACTS};
+use crate::contact::face_search::faces;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
 use crate::contact::tuning::MAX_TILT_TAN;
@@ -36,8 +37,6 @@ pub struct Contact {
     pub id: u32,
 }
 
-/// Largest number of corners of a region: each side of one face adds at most one to the corners of the other.
-pub const MAX_CONTACTS: usize = 2 * MAX_CORNERS;
 /// A contact manifold: a list of contacts, the deepest first.
 pub type Manifold = FixedVec<Contact, MAX_CONTACTS>;
 

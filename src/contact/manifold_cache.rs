@@ -13,9 +13,8 @@
 //!
 //! Valid for the swapped pair too: faces are stored by the orientation of the frame, not by object.
 
-use crate::contact::face::{Face, FaceSample, MAX_CORNERS, THREE_DIRECTIONS};
+use crate::contact::face::{Face, FaceSample, MAX_CONTACTS, MAX_CORNERS, Motion, THREE_DIRECTIONS};
 use crate::contact::frame::{ContactFrame, outwards};
-use crate::contact::manifold::MAX_CONTACTS;
 use crate::contact::tuning::CACHED_LEAN;
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
@@ -44,17 +43,6 @@ pub struct CachedFace {
     /// Not 0 if the samples are all corners of a polygon.
     pub is_complete: f32,
     samples: [CachedSample; MAX_CORNERS],
-}
-
-/// Rigid motion of a face in the frame from one query to the next.
-#[derive(Clone, Copy)]
-pub struct Motion {
-    /// The rotation about the normal.
-    pub rotation: UnitComplex<f64>,
-    /// The old position of one vertex.
-    from: Vec2,
-    /// Its new position.
-    to: Vec2,
 }
 
 /// Warm start data of the contact manifold of one pair. All zeros: empty.
@@ -144,13 +132,6 @@ impl CachedFace {
         let is_one = |(a, b): (Vec2, Vec2)| (rotation * a - b).norm() <= slack;
         let motion = Motion { rotation, from, to };
         spokes().all(is_one).then_some(motion)
-    }
-}
-
-impl Motion {
-    /// Returns the new position of a point that moves with the face.
-    fn apply(&self, at: Vec2) -> Vec2 {
-        self.to + self.rotation * (at - self.from)
     }
 }
 

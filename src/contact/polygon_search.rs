@@ -22,19 +22,18 @@
 //! curved outline is a polygon whose sides close early. All corners are vertices at the same tilt, so that they
 //! do not depend on what was known before.
 
-use crate::contact::fan::Fan;
 use crate::contact::feature::{ContactQuery, four_directions};
 use crate::contact::frame::outwards;
-use crate::contact::tuning::{
-    COMMON_DROP_FACTOR, CORNER_SHIFT_REL, DROP_TOL, LEAST_GROWTH, TILT_FACTOR,
+use crate::contact::limit::Limit;
+use crate::contact::overlap::{
+    Corners, MAX_CORNERS, Overlap, in_overlap, volume_beyond, volume_of,
 };
+use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, LEAST_GROWTH, TILT_FACTOR};
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Vec2, offset};
-use crate::math::{Vec3, ZERO, larger, lesser};
+use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 
-/// Largest number of corners of a polygon.
-pub const MAX_CORNERS: usize = 12;
 /// Largest number of rounds: each but the last finds a corner.
 const MAX_ROUNDS: usize = MAX_CORNERS;
 /// Least drop of both ends of a side, in depths, beyond which no corner is in the overlap: between two directions tilted by T
@@ -64,101 +63,6 @@ struct Found {
     /// The drop that all corners have in common.
     common: f64,
     own: Overlap,
-}
-
-/// The corners of a polygon, counterclockwise.
-pub type Corners = FixedVec<Vec3, MAX_CORNERS>;
-
-/// The overlap of a polygon with a plane.
-#[derive(Clone, Copy)]
-struct Overlap {
-    /// Twice the volume, in depths, m².
-    volume: f64,
-    /// The sum of its vertices, and their number.
-    sum: Vec2,
-    count: f64,
-}
-
-/// The outline of the smaller object, beyond which the larger one is not searched.
-pub struct Limit {
-    /// The outline of the smaller object, mirrored, beyond which no corner matters.
-    outline: FixedVec<Vec2, { Fan::CAPACITY }>,
-    overlap: Overlap,
-    /// Vertices in the support plane, those farthest along the axes and their opposites.
-    face: [Vec2; 4],
-    /// Distance by which the outline may be outside of them, metres.
-    slack: f64,
-}
-
-impl Limit {
-    /// Makes the limit without vertices in the support plane. `outline`: of the smaller object, in its own frame.
-    #[inline(always)]
-    pub fn new(outline: &[Vec3], slack: f64) -> Self {
-        let mut limit = Self {
-            outline: FixedVec::default(),
-            overlap: Overlap::EMPTY,
-            face: [Vec2::zeros(); 4],
-            slack,
-        };
-        let mut last = in_overlap(outline.last().unwrap_or(&ZERO), 0.0);
-        for v in outline {
-            let v = in_overlap(v, 0.0);
-            limit.overlap.add(volume_of(&last, &v), &-v);
-            limit.outline.push(-v.xy());
-            last = v;
-        }
-        limit
-    }
-
-    /// Adds a vertex if it is in the support plane. Returns whether it is farther than the others.
-    #[inline(always)]
-    pub fn add(&mut self, v: &Vec3) -> bool {
-        if !(v.z <= DROP_TOL) {
-            return false;
-        }
-        let [a, b, c, d] = &mut self.face;
-        let farther = [v.x > a.x, v.y > b.y, v.x < c.x, v.y < d.y];
-        for (place, is_farther) in [a, b, c, d].into_iter().zip(farther) {
-            *place = if is_farther { v.xy() } else { *place };
-        }
-        farther
-            .iter()
-            .fold(false, |any, is_farther| any | is_farther)
-    }
-
-    /// Returns whether the vertices in the support plane contain the outline: then so does the face, which is convex.
-    #[inline(always)]
-    pub fn is_plane(&self) -> bool {
-        let [a, b, c, d] = &self.face;
-        let (first, second) = (c - a, d - b);
-        // A quadrilateral without area contains nothing. Negated for NaN.
-        let sum = first.x.abs() + first.y.abs() + second.x.abs() + second.y.abs();
-        if !(first.perp(&second) > self.slack * sum) {
-            return false;
-        }
-        for [p, q] in [[a, b], [b, c], [c, d], [d, a]] {
-            let side = q - p;
-            let least = side.perp(p) - self.slack * (side.x.abs() + side.y.abs());
-            for v in self.outline.iter() {
-                if !(side.perp(v) >= least) {
-                    return false;
-                }
-            }
-        }
-        true
-    }
-
-    /// Returns how far the outline is beyond the side from `p` to `q`, metres; 0 if it is not.
-    #[inline(always)]
-    fn reach_beyond(&self, p: &Vec3, q: &Vec3) -> f64 {
-        let side = offset(p, q);
-        let level = p.xy().perp(&side);
-        let length = side.norm();
-        let least = self.slack * length;
-        let most = |most, v: &Vec2| larger(v.perp(&side) - level, most);
-        let most = self.outline.iter().fold(least, most);
-        if most > least { most / length } else { 0.0 }
-    }
 }
 
 impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
@@ -262,7 +166,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
             _ => p.gap,
         };
         gap > 0.0
-            && overlap.shift(p, q, gap, common, self.depth_over_tilt)
+            && shift(overlap, [p, q], gap, common, self.depth_over_tilt)
                 > CORNER_SHIFT_REL * self.extent
     }
 
@@ -373,67 +277,26 @@ impl Found {
     }
 }
 
-impl Overlap {
-    const EMPTY: Self = Self {
-        volume: 0.0,
-        sum: Vec2::new(0.0, 0.0),
-        count: 0.0,
-    };
-
-    /// Adds a vertex and a volume.
-    #[inline(always)]
-    fn add(&mut self, volume: f64, v: &Vec3) {
-        self.volume += volume;
-        self.sum += v.xy();
-        self.count += 1.0;
-    }
-
-    /// Returns the overlap with the other object's: the one of less volume.
-    #[inline(always)]
-    fn limited(&self, limit: Option<&Limit>) -> Self {
-        match limit {
-            Some(limit) if limit.overlap.volume.abs() < self.volume.abs() => limit.overlap,
-            _ => *self,
-        }
-    }
-
-    /// Estimates by how far a corner beyond a side could move the centroid: by its area, or by being above the interpolated
-    /// surface, by more than the common drop.
-    #[inline(always)]
-    fn shift(&self, p: &Corner, q: &Corner, gap: f64, common: f64, depth_over_tilt: f64) -> f64 {
-        let (a, b) = (&p.inside, &q.inside);
-        let drop = 0.5 * (p.at.z + q.at.z) - common;
-        let raised = lesser(larger(gap / depth_over_tilt - common, 0.0), drop);
-        let gain = larger(1.0 - drop + raised, 0.0) - larger(1.0 - drop, 0.0);
-        let length = offset(a, b).norm();
-        let beyond = length * gap * (1.0 - lesser(a.z, b.z)) / larger(drop, 1.0);
-        let above = a.xy().perp(&b.xy()).abs() * gain * (1.0 / 3.0);
-        let missing = larger(beyond, above);
-        // The corner may be beyond either end.
-        let lever = ((a.xy() + b.xy()) * 0.5 - self.sum / self.count).norm() + length * (1.0 / 6.0);
-        missing * lever / (self.volume.abs() + missing)
-    }
-}
-
-/// Returns twice the volume over the triangle of the deepest point and two vertices, in depths.
+/// Estimates by how far a corner beyond a side could move the centroid: by its area, or by being above the interpolated
+/// surface, by more than the common drop.
 #[inline(always)]
-pub fn volume_of(a: &Vec3, b: &Vec3) -> f64 {
-    a.xy().perp(&b.xy()) * (1.0 - (a.z + b.z) * (1.0 / 3.0))
-}
-
-/// Returns twice the volume, in depths, by which a vertex beyond the side from `a` to `b` enlarges the overlap.
-#[inline(always)]
-fn volume_beyond(a: &Vec3, at: &Vec3, b: &Vec3) -> f64 {
-    volume_of(a, at) + volume_of(at, b) - volume_of(a, b)
-}
-
-/// Returns a vertex without the common drop, and at the end of the overlap if it is beyond it.
-#[inline(always)]
-pub fn in_overlap(v: &Vec3, common: f64) -> Vec3 {
-    let z = larger(v.z - common, 0.0);
-    if z <= 1.0 {
-        return Vec3::new(v.x, v.y, z);
-    }
-    let scale = 1.0 / z;
-    Vec3::new(v.x * scale, v.y * scale, 1.0)
+fn shift(
+    overlap: &Overlap,
+    [p, q]: [&Corner; 2],
+    gap: f64,
+    common: f64,
+    depth_over_tilt: f64,
+) -> f64 {
+    let (a, b) = (&p.inside, &q.inside);
+    let drop = 0.5 * (p.at.z + q.at.z) - common;
+    let raised = lesser(larger(gap / depth_over_tilt - common, 0.0), drop);
+    let gain = larger(1.0 - drop + raised, 0.0) - larger(1.0 - drop, 0.0);
+    let length = offset(a, b).norm();
+    let beyond = length * gap * (1.0 - lesser(a.z, b.z)) / larger(drop, 1.0);
+    let above = a.xy().perp(&b.xy()).abs() * gain * (1.0 / 3.0);
+    let missing = larger(beyond, above);
+    // The corner may be beyond either end.
+    let lever =
+        ((a.xy() + b.xy()) * 0.5 - overlap.sum / overlap.count).norm() + length * (1.0 / 6.0);
+    missing * lever / (overlap.volume.abs() + missing)
 }

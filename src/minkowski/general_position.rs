@@ -36,16 +36,12 @@
 //! which are tilted within the plane. In single precision the error of such a callback is too large for any tilt, and
 //! nothing is tilted.
 
-use crate::math::{EPSILON, POLE, Vec3, lesser};
+use crate::math::{POLE, Vec3, lesser};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::SMALL_PART;
+use crate::minkowski::tuning::{MIN_TILT_RAD, SMALL_PART};
 
 /// The largest tilt, radians.
 pub const MAX_TILT_RAD: f64 = 1e-8;
-/// The least useful tilt, radians, 1e-10. Measured with ODE's cylinder of radius 0.3, 20,000 rotations, the share of points
-/// that are off by more than 12 µm, and that are low by more than 1 mm: without tilt 29 %, 16 %; 2.5e-12 66 %, 0.01 %. With
-/// this one no depth is (`ode_cylinder`).
-pub const MIN_TILT_RAD: f64 = 4.5e5 * EPSILON;
 /// Whether directions are tilted at all: not in single precision.
 pub const HAS_TILT: bool = MIN_TILT_RAD <= MAX_TILT_RAD;
 /// The largest |z| of a unit direction that is turned about [`POLE`]; others are turned about POLE without its z. Each
@@ -94,6 +90,7 @@ pub fn in_general_position(n: &Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::EPSILON;
     use crate::minkowski::support::SupportPoint;
     use crate::test_shapes::Random;
 

@@ -8,7 +8,7 @@ use core::cell::Cell;
 
 use crate::geometry::barycentric;
 use crate::math::{Vec3, larger, max_abs};
-use crate::minkowski::general_position::MIN_TILT_RAD;
+use crate::minkowski::tuning::MIN_TILT_RAD;
 
 /// A convex object, given by its support function.
 pub trait SupportMap {

@@ -23,11 +23,11 @@
 
 use crate::math::{Vec3, from_real, larger, lesser, to_real};
 use crate::minkowski::general_position::{
-    HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, allows_largest_tilt, tilt_rad, tilted,
+    HAS_TILT, MAX_TILT_RAD, allows_largest_tilt, tilt_rad, tilted,
 };
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::SMALL_PART;
+use crate::minkowski::tuning::{MIN_TILT_RAD, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
 

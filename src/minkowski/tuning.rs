@@ -3,6 +3,8 @@
 
 //! The tuned constants of the search for a depth or a distance, with what was tried.
 
+use crate::math::EPSILON;
+
 // Tolerances.
 
 /// The part that counts as small, of
@@ -29,6 +31,11 @@ pub const SMALL_PART: f64 = 0.25;
 /// of the ray in D. Measured: without the edge 21 % more support points; 4 times the distance in place of 3 takes 1 % fewer
 /// for the global minimum, and 13 % more for a local one of hulls, whose portals then extend into other valleys.
 pub const LARGE_PART: f64 = 1.0 - SMALL_PART;
+
+/// The least useful tilt, radians, 1e-10. Measured with ODE's cylinder of radius 0.3, 20,000 rotations, the share of points
+/// that are off by more than 12 µm, and that are low by more than 1 mm: without tilt 29 %, 16 %; 2.5e-12 66 %, 0.01 %. With
+/// this one no depth is (`ode_cylinder`).
+pub const MIN_TILT_RAD: f64 = 4.5e5 * EPSILON;
 
 /// The number of attempts that may fail before another way is taken: axes of the last query, tilts of portal discovery,
 /// steps of GJK that come no closer, and predictions of a model of D. Measured: with 3 in place of 5 support points and

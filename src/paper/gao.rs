@@ -33,10 +33,11 @@
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
-use crate::minkowski::general_position::{MIN_TILT_RAD, tilt_rad, tilted_in_plane};
+use crate::minkowski::general_position::{tilt_rad, tilted_in_plane};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::tolerance::Scale;
+use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::portal::choose_corner;
 use crate::types::{Penetration, Settings, Status};
 

@@ -9,6 +9,7 @@ use super::super::callbacks::QueryArgs;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::codes::CCD_BAD_INPUT;
 use super::direction;
+use crate::contact::face::MAX_CONTACTS;
 use crate::contact::manifold;
 use crate::contact::manifold_cache::ManifoldCache;
 use crate::math::{Real, unit};
@@ -109,7 +110,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
     let (Some(normal), Some((one, two))) = (unit(&normal), objects) else {
         return CCD_BAD_INPUT;
     };
-    let max = (max as usize).min(manifold::MAX_CONTACTS);
+    let max = (max as usize).min(MAX_CONTACTS);
     // SAFETY: [inputs]; every bit pattern is a ManifoldCache, which is all but the checksum.
     let mut updated = unsafe { cache.as_ref() }.map(|cache| {
         if cache.checksum == cache.sum() {
