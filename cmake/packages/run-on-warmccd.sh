@@ -12,5 +12,6 @@
 # Without the comparison: LD_LIBRARY_PATH=THIS-FOLDER/lib PROGRAM
 
 set -eu
+[ $# -gt 0 ] || { sed -n 's/^#   \( *[r-]\)/\1/p' "$0" >&2; exit 2; }
 here=$(cd "$(dirname "$0")" && pwd)
 exec sh "$here/recorder/compare.sh" --swap --recorder "$here/recorder" --library "$here/lib/libccd.so.2" "$@"

@@ -20,8 +20,8 @@
  * solver type and the cached guess of a request are ignored: the pair's state replaces them.
  *
  * Signs and order are FCL's: a contact's normal points from the first object to the second,
- * penetration_depth is positive, pos lies midway between the two surfaces; nearest_points are
- * the first's and the second's. */
+ * penetration_depth is positive, pos is that of ccdPenetration, with a sphere or capsule the middle
+ * of the closest points; nearest_points are the first's and the second's. */
 
 #ifndef __CCD_FCL_HPP__
 #define __CCD_FCL_HPP__

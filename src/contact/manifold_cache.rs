@@ -127,7 +127,9 @@ impl CachedFace {
         let mut rotation = UnitComplex::identity();
         // A face not much larger than the slack has no measurable rotation.
         if a.norm() > 64.0 * slack {
-            rotation = UnitComplex::rotation_between(&a, &b);
+            // Not nalgebra's rotation_between: it goes by the angle, whose functions differ from one C library to the next.
+            let turn = Vec2::new(a.dot(&b), a.perp(&b)).normalize();
+            rotation = UnitComplex::from_cos_sin_unchecked(turn.x, turn.y);
         }
         let is_one = |(a, b): (Vec2, Vec2)| (rotation * a - b).norm() <= slack;
         let motion = Motion { rotation, from, to };

@@ -159,7 +159,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         }
         last_normal = normal;
         let corner = |pair| set.vertex(pair, interior).w;
-        if !polytope.insert(face, &w, rounding, &corner) {
+        if !polytope.insert(face, &w, rounding, &corner, has_larger) {
             return Ok(None);
         }
     }

@@ -41,8 +41,9 @@
 //!   its corners ([`EpaPolytope::recompute_plane`]). Since it has none of the inherited properties, it is used only if
 //!   the interior point is below it, and d > 0 if that holds for F′. Otherwise F′ is normalised, which scales the
 //!   error; or, if F′ is mostly rounding, the new face has F's plane, which its corners are on or above.
-//! - *The horizon is not a single closed loop*, because of rounding. The insertion is reverted, and repeated with
-//!   fewer visible faces ([`EpaPolytope::insert`]). With only the first face the horizon is always its three edges.
+//! - *The horizon is not a single closed loop*, because of rounding, or has more edges than the last buffers have free faces.
+//!   The insertion is reverted, and repeated with fewer visible faces ([`EpaPolytope::insert`]). With only the first face the
+//!   horizon is always its three edges.
 //!
 //! # Layout
 //!
@@ -379,10 +380,11 @@ impl<const F: usize> EpaPolytope<F> {
     }
 
     /// Inserts the corner `new`. `first`: a face that it is above by more than `level`, metres. `corner` returns the point
-    /// of a corner. Returns `false` if there is no room for the new faces; the polytope is then unchanged.
+    /// of a corner. Returns `false` if there is no room for the new faces; the polytope is then unchanged. `has_larger`:
+    /// true if the caller continues in larger buffers then.
     ///
-    /// As long as the horizon is not a single closed loop, the height above which a face counts as visible is
-    /// multiplied by eight, until only `first` is visible.
+    /// As long as the horizon is not a single closed loop, or without larger buffers has more edges than there are free
+    /// faces, the height above which a face counts as visible is multiplied by eight, until only `first` is visible.
     #[inline(always)]
     pub fn insert(
         &mut self,
@@ -390,12 +392,14 @@ impl<const F: usize> EpaPolytope<F> {
         new: &Vertex,
         level: f64,
         corner: &impl Fn(VertexPair) -> Vec3,
+        has_larger: bool,
     ) -> bool {
         let mut above = level;
         // Terminates: the horizon of only `first` is closed.
         loop {
             match self.walk_visible(first, new, above, corner) {
-                Insertion::HorizonNotSimple if above < f64::INFINITY => {
+                Insertion::NoRoom if has_larger => return false,
+                Insertion::HorizonNotSimple | Insertion::NoRoom if above < f64::INFINITY => {
                     let height = self.plane(first).height(&Plane::point(&new.w));
                     above = if 8.0 * above < height {
                         8.0 * above
@@ -713,8 +717,13 @@ mod tests {
         }
         for (i, p) in points.iter().enumerate().skip(4) {
             if let Some(f) = farthest_below(&hull, &Plane::point(p), rounding) {
-                let done =
-                    hull.insert(f, &corner(points, i), rounding, &|pair| point(points, pair));
+                let done = hull.insert(
+                    f,
+                    &corner(points, i),
+                    rounding,
+                    &|pair| point(points, pair),
+                    true,
+                );
                 assert!(done);
             }
             check(&hull, points);
@@ -839,13 +848,13 @@ mod tests {
             let Some(f) = farthest_below(&whole, &Plane::point(p), LEVEL) else {
                 continue;
             };
-            assert!(whole.insert(f, &new, LEVEL, &point));
-            if !is_copied && !small.insert(f, &new, LEVEL, &point) {
+            assert!(whole.insert(f, &new, LEVEL, &point, true));
+            if !is_copied && !small.insert(f, &new, LEVEL, &point, true) {
                 large.copy_from(&small);
                 is_copied = true;
             }
             if is_copied {
-                assert!(large.insert(f, &new, LEVEL, &point));
+                assert!(large.insert(f, &new, LEVEL, &point, true));
                 check(&large, &points);
             }
         }
@@ -868,7 +877,13 @@ mod tests {
                 let faces =
                     |p: &EpaPolytope<32>| p.faces().map(|f| p.corners(f)).collect::<Vec<_>>();
                 let before = faces(&small);
-                if !small.insert(f, &corner(&points, i), LEVEL, &|pair| point(&points, pair)) {
+                if !small.insert(
+                    f,
+                    &corner(&points, i),
+                    LEVEL,
+                    &|pair| point(&points, pair),
+                    true,
+                ) {
                     assert_eq!(before, faces(&small));
                     refused += 1;
                 }
@@ -876,5 +891,29 @@ mod tests {
             }
         }
         assert!(refused > 0);
+    }
+
+    /// Two apices over a polygon, and a third that sees twelve faces: their fan has more faces than are free.
+    #[test]
+    fn without_larger_buffers_a_fan_of_too_many_faces_becomes_a_smaller_one() {
+        let rim = |i: usize| {
+            let (sin, cos) = (i as f64 * core::f64::consts::PI / 6.0).sin_cos();
+            Vec3::new(cos, sin, 0.0)
+        };
+        let mut points = vec![rim(0), rim(4), rim(8), Vec3::z(), -Vec3::z()];
+        points.extend([1, 2, 3, 5, 6, 7, 9, 10, 11].map(rim));
+        points.push(Vec3::z() * 2.0);
+        let mut hull = EpaPolytope::<32>::BLANK;
+        assert!(start(&mut hull, &points, 2.0, false));
+        for (i, p) in points.iter().enumerate().skip(4) {
+            let p = Plane::point(p);
+            let first = farthest_below(&hull, &p, LEVEL).expect("a face below a corner");
+            let new = corner(&points, i);
+            let point = |pair| point(&points, pair);
+            let is_last = i + 1 == points.len();
+            assert_eq!(hull.insert(first, &new, LEVEL, &point, true), !is_last);
+            assert!(!is_last || hull.insert(first, &new, LEVEL, &point, false));
+            check(&hull, &points);
+        }
     }
 }

@@ -148,6 +148,16 @@ fn glibc_of_2018_is_enough() {
     assert!(versions.iter().all(|minor| *minor <= 28), "{symbols}");
 }
 
+/// Checks that the library needs no function of libm: from one C library to another their last bits differ, and with them
+/// would answers.
+#[test]
+#[cfg(target_env = "gnu")]
+fn no_function_of_libm_is_needed() {
+    let needed = output("readelf", &["-d"], &ours("libccd.so"));
+    assert!(needed.contains("libc.so"), "{needed}");
+    assert!(!needed.contains("libm.so"), "{needed}");
+}
+
 /// Checks that no function of the library calls an exported one, and that the dynamic linker has none to bind: another libccd
 /// in the process, or an object that is preloaded, would get the call.
 #[test]

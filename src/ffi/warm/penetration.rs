@@ -41,10 +41,9 @@ pub struct ccd_penetration_t {
     /// Contact position, CCD_WANT_POS: the center of pressure, an estimate of the centroid of the
     /// overlap volume, projected along normal to the plane midway between the two support planes; the
     /// deeper the overlap, the nearer it is instead to a point between the centers, beside that plane. At
-    /// most half the depth from both objects, within the tolerance; up to 1 mm farther in 2 of a
-    /// million hits of slender metre-sized curved bodies. Root mean square error for objects of a
-    /// quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to 10
-    /// corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
+    /// most half the depth from both objects, within the tolerance. Root mean square error for objects
+    /// of a quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to
+    /// 10 corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
     /// round objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller
     /// object's size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
     /// moves by at most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
