@@ -819,7 +819,7 @@ mod tests {
     fn a_center_outside_its_object_proves_nothing() {
         let mut r = Random::new(44);
         let mut found = 0;
-        for _ in 0..200 {
+        for _ in 0..400 {
             let md = difference(
                 ball(Vec3::x() * r.within(0.5, 2.5), 1.0),
                 ball(Vec3::zeros(), 1.0),
