@@ -113,7 +113,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             self.set,
             &self.dir,
             length,
-            tolerance,
+            0.5 * tolerance * length,
             None,
         )?;
         self.note_planes(0);

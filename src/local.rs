@@ -176,8 +176,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // The approximate length of the ray in D from the interior point.
             let length = (first.w - self.interior).dot(&ray);
             // The ring's tilt is half of that of the directions that confirm a minimum.
-            let ring_tilt = Some(0.5 * CONFIRM_TILT_RAD);
-            let portal = discover(self.query, self.set, &ray, length, tolerance, ring_tilt)?;
+            let ring_around = Some((&ray, 0.5 * CONFIRM_TILT_RAD));
+            let near2 = 0.5 * tolerance * length;
+            let portal = discover(self.query, self.set, &ray, length, near2, ring_around)?;
             let step = match portal {
                 Some(mut portal) => self.refine(&ray, &mut portal, tolerance)?,
                 None => Step::End(Status::Rounding),

@@ -16,9 +16,10 @@
 //! Departures. Both steps take a known difference if one is far enough, and evaluate the callbacks otherwise.
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
-//! so that the portal of a shallow contact is small and close to the minimum. If v1 is on the ray itself, the portal
-//! is a *ring*: the support points of three directions around the ray. A caller whose ray must cross the portal gets
-//! perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] and no discovery.
+//! so that the portal of a shallow contact is small and close to the minimum. If v1 is near the ray, the portal is a
+//! *ring*: the support points of three directions around that of the upper bound. A caller whose ray must cross the
+//! portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] around the ray
+//! and no discovery.
 //!
 //! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
 //! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
@@ -50,9 +51,9 @@ pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) 
 }
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
-/// metres. `gap`: the allowed difference of the bounds, metres. `ring_tilt`: tangent of the tilt of [`ring`]; `None` for
-/// a portal that the ray must cross, and which is no ring. The corners are in the order in which the portal's normal
-/// points along the ray. A full set ends the discovery: `None`.
+/// metres. `near2`: the square of the distance up to which v1 counts as near the ray, m². `ring_around`: axis and tilt of
+/// [`ring`]; `None` for a portal that the ray must cross, and which is no ring. The corners are in the order in which the
+/// portal's normal points along the ray. A full set ends the discovery: `None`.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -62,8 +63,8 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     ray: &Vec3,
     length: f64,
-    gap: f64,
-    ring_tilt: Option<f64>,
+    near2: f64,
+    ring_around: Option<(&Vec3, f64)>,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
     trace::stage("discovery");
     let mut v1 = set.farthest_vertex(ray);
@@ -73,9 +74,9 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     // The height of v1 and v2 along `towards_ray`, at most 0.
     let mut height = towards_ray.dot(&v1.w);
     let mut failures = 0;
-    if !(-height > 0.5 * gap * length) {
-        match ring_tilt {
-            Some(tilt) => match ring(query, set, ray, tilt)? {
+    if !(-height > near2) {
+        match ring_around {
+            Some((axis, tilt)) => match ring(query, set, axis, tilt)? {
                 None => (towards_ray, height) = (perpendicular(ray), 0.0),
                 portal => return Ok(portal),
             },
@@ -91,7 +92,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     let mut tiny = 1e-12 * query.scale.size2();
     let mut side = 1.0;
     for _ in 0..MAX_STEPS {
-        if ring_tilt.is_none() {
+        if ring_around.is_none() {
             // An edge may be as short as the tolerance.
             tiny = 1e-12 * query.scale.size() * towards_ray.norm();
         }
@@ -180,7 +181,7 @@ fn discovery_dir(
     }
 }
 
-/// Evaluates three directions around a ray, tilted by the tangent `tilt`, at most [`WIDEST_RING_TAN`]. Returns their
+/// Evaluates three directions around unit `axis`, tilted by the tangent `tilt`, at most [`WIDEST_RING_TAN`]. Returns their
 /// points as a portal; `None` if the set is full, or if the three points are nearly on a line.
 // Cold: codegen, see README.
 #[cold]
@@ -188,12 +189,12 @@ fn discovery_dir(
 pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    ray: &Vec3,
+    axis: &Vec3,
     tilt: f64,
 ) -> Result<Option<[Vertex; 3]>, Stop> {
     trace::stage("ring");
-    let e1 = perpendicular(ray);
-    let e2 = ray.cross(&e1);
+    let e1 = perpendicular(axis);
+    let e2 = axis.cross(&e1);
     let half = 0.75_f64.sqrt();
     // Also for NaN.
     let tilt = lesser(tilt, WIDEST_RING_TAN);
@@ -203,7 +204,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
         if set.is_full() {
             return Ok(None);
         }
-        let n = ray + (e1 * turn[0] + e2 * turn[1]) * tilt;
+        let n = axis + (e1 * turn[0] + e2 * turn[1]) * tilt;
         *corner = query.evaluate(set, &(n / n.norm()))?.vertex();
     }
     let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
@@ -350,8 +351,8 @@ mod tests {
             &mut set,
             &ray,
             length,
-            gap,
-            Some((2.0 * gap / length).sqrt()),
+            0.5 * gap * length,
+            Some((&ray, (2.0 * gap / length).sqrt())),
         )
         .ok()??;
         let mut portal = found;

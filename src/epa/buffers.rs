@@ -48,7 +48,7 @@ const ARENA_FACES: usize = (4 * ARENA_VERTICES).next_multiple_of(16);
 /// is kept above the limit of support points too, which applies only while the origin is inside the polytope.
 pub const START_VERTICES: usize = 4;
 
-// See EpaPolytope::room.
+// See EpaPolytope::has_room.
 const _: () = assert!(LARGE_FACES > 2 * LARGE_VERTICES && ARENA_FACES <= MAX_FACES);
 const _: () = assert!(START_VERTICES < SMALL_VERTICES);
 

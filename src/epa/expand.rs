@@ -120,7 +120,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         if is_inside && query.support_points() >= limits.max_points {
             return Ok(Some(Status::SupportLimit));
         }
-        if set.len() + MAX_REFINEMENTS >= N || polytope.room() == 0 {
+        if set.len() + MAX_REFINEMENTS >= N || !polytope.has_room(0) {
             return Ok(None);
         }
         let face = closest.face;
@@ -132,7 +132,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         let is_gain =
             !(closest.key > 0.0) || height * distance > LARGE_PART * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
-        let has_room = has_larger || polytope.room() > N - MAX_REFINEMENTS - set.len();
+        let has_room = has_larger || polytope.has_room(N - MAX_REFINEMENTS - set.len());
         if !(height > level && is_gain && has_room) {
             let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
             let vertices = |set: &VertexSet<N>| polytope.face(set, interior, face);

@@ -7,8 +7,9 @@
 //!    `first_dir`). Most queries of separated objects end here.
 //! 2. *Interior point*: the difference of the centers if they are given; else the middle of the
 //!    support points along the ray and opposite to it, which is always in D.
-//! 3. *Portal*: discovery and refinement ([`crate::portal`]); if the center is near the origin, a wide ring of three
-//!    support points around the ray.
+//! 3. *Portal*: discovery and refinement ([`crate::portal`]); if the vertex of the first direction is near the ray, as
+//!    that of a warm state is, a ring of three support points around the direction of the upper bound; if the center is near
+//!    the origin, a wide ring around the ray.
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
@@ -42,11 +43,11 @@ use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, max_foot_distance2, witness_points};
 use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
 use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
-use crate::math::{Vec3, larger, normalise_unscaled};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::SMALL_PART;
+use crate::minkowski::tuning::{LARGE_PART, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{WIDEST_RING_TAN, discover, refine, ring};
@@ -57,6 +58,11 @@ use crate::types::{Penetration, Status};
 /// for the rounding of a plane and of a point above it if the size of D is twice the world extent; the rest is a
 /// reserve.
 const ROUNDING_GAP_EPS: f64 = 32.0;
+
+/// The largest tangent of the tilt of the ring of a contact that is not deep: 19°. Measured: without a limit two spheres 0.3 of
+/// a diameter deep take 32 support points in place of 20, and hulls of 642 corners 5 % more; with 0.25 hulls of 162 corners
+/// take 3 % more, with 0.15 8 %.
+const WIDE_RING_TAN: f64 = 0.35;
 
 /// The input of a query besides the support functions.
 pub struct EpaRequest<'a> {
@@ -119,10 +125,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     let is_warm = state.is_overlap();
     // The axis of a separated pair has been evaluated already; nothing else of its state is used.
     let radius = if is_warm { state.radius } else { [0.0; 2] };
-    // The ray is evaluated too if the warm direction is only a guess (its depth is 0), or if both objects are round, where
-    // its vertex is a poor corner of a portal.
-    let is_round = radius[0] * radius[1] > 0.0;
-    if is_warm && (is_round || !(state.depth > 0.0)) {
+    // The ray is evaluated too if the warm direction is only a guess (its depth is 0).
+    if is_warm && !(state.depth > 0.0) {
         query.evaluate(set, &request.ray)?;
     }
     let mut solver = EpaSolver {
@@ -247,8 +251,24 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             }
         }
         let length = query.upper.depth - self.interior.v.dot(ray);
-        let ring_tilt = Some((2.0 * gap / length).sqrt());
-        let Some(mut portal) = discover(query, set, ray, length, gap, ring_tilt)? else {
+        // As wide as the gap allows, or as the ball that the tetrahedron of a shallow contact has to contain.
+        let wide = lesser(
+            LARGE_PART / SMALL_PART * query.upper.depth,
+            WIDE_RING_TAN * length,
+        );
+        let ring_radius = larger((2.0 * gap * length).sqrt(), wide);
+        let near2 = SMALL_PART * SMALL_PART * ring_radius * ring_radius;
+        // The vertex of the warm direction of two round objects is on a flat side of D, and a poor corner: the ray is evaluated
+        // too, unless a ring is next.
+        if self.fit.radius[0] * self.fit.radius[1] > 0.0 && set.len() == 1 {
+            let v1 = set.farthest_vertex(ray).w;
+            if (ray * v1.dot(ray) - v1).norm_squared() > near2 {
+                query.evaluate(set, ray)?;
+            }
+        }
+        let lowest = query.upper.dir;
+        let ring_around = Some((&lowest, ring_radius / length));
+        let Some(mut portal) = discover(query, set, ray, length, near2, ring_around)? else {
             return Ok(None);
         };
         refine(
@@ -799,7 +819,7 @@ mod tests {
     fn a_center_outside_its_object_proves_nothing() {
         let mut r = Random::new(44);
         let mut found = 0;
-        for _ in 0..200 {
+        for _ in 0..400 {
             let md = difference(
                 ball(Vec3::x() * r.within(0.5, 2.5), 1.0),
                 ball(Vec3::zeros(), 1.0),

@@ -180,8 +180,9 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     let ray = -inner / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
-    let ring_tilt = Some((2.0 * gap / length).sqrt());
-    let Some(mut portal) = discover(query, set, &ray, length, gap, ring_tilt)? else {
+    let ring_around = Some((&ray, (2.0 * gap / length).sqrt()));
+    let near2 = 0.5 * gap * length;
+    let Some(mut portal) = discover(query, set, &ray, length, near2, ring_around)? else {
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.

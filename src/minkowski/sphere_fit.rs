@@ -16,17 +16,20 @@
 //!    w / |w|.
 //! 3. *Confirmation.* A prediction that agrees with the evaluated support value confirms the fit; one that does
 //!    not resets the radii, and after [`MAX_FAILURES`] of them the fit is not used any more.
-//! 4. *Tilted direction.* With a confirmed fit, the direction of the upper bound is tilted towards a face until the
-//!    chord of its support point and the new one is as close to the origin as the allowed gap permits.
+//! 4. *Tilted direction.* The direction of the upper bound is tilted towards a face until the chord of its support point
+//!    and the new one is as close to the origin as the allowed gap permits: with the radius of a confirmed fit, else with
+//!    that of an *arc*, two samples between which e and f nearly agree, and which need be on no sphere.
 //!
 //! Outputs. [`SphereFit::radius`]: a guess. A direction of [`SphereFit::predict`] or
 //! [`SphereFit::tilted_from_lowest`] must be evaluated; the support value decides.
 
 use crate::geometry::barycentric;
-use crate::math::{EPSILON, Vec3, lesser, normalise_unscaled};
+use crate::math::{EPSILON, Vec3, larger, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
-use crate::minkowski::tuning::{CONFIRM_TILT_RAD, MAX_FAILURES, MAX_RING_RATIO, SMALL_PART};
+use crate::minkowski::tuning::{
+    CONFIRM_TILT_RAD, MAX_FAILURES, MAX_RING_RATIO, SMALL_PART, SMOOTH_REL_TOL,
+};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
 /// The largest relative difference of e and f, and the largest angle, radians, between the change of direction and the
@@ -241,47 +244,72 @@ impl SphereFit {
         }
     }
 
-    /// Returns the direction of the upper bound, `lowest`, tilted towards the unit normal of a face; `None` if the
-    /// angle to the normal is less than the tilt, or not acute.
+    /// Returns the direction of the upper bound, tilted towards the unit normal of a face, and the least support value that
+    /// is predicted there, metres. `None` if the surface of D is no arc there, if the angle to the normal is less than the
+    /// tilt, or not acute. The interior point may be a corner.
     ///
     /// On a sphere of radius ρ, with the origin at the distance e = ρ − upper from its center, a chord between the
-    /// angles α and γ from `lowest` is at least as far from the origin as the upper bound if
+    /// angles α and γ from the direction of the upper bound is at least as far from the origin as the upper bound if
     /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ. Corners at equal
-    /// angles are a *ring* around `lowest`; the first one is as wide as the gap allows.
-    pub fn tilted_from_lowest<const N: usize>(
+    /// angles are a *ring*; the first one is as wide as the gap allows. Without a confirmed fit ρ is that of an arc
+    /// ([`arc_radius`]), the lowest point of which may be farther from the upper bound than the ring: then that is next.
+    fn tilted_from_lowest<const N: usize>(
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
-        lowest: &Vec3,
-        upper: f64,
+        upper: &SupportPlane,
         normal: &Vec3,
         gap: f64,
-    ) -> Option<Vec3> {
-        let rho = self.sum();
+    ) -> Option<(Vec3, f64)> {
+        let is_sphere = self.is_confirmed && self.sum() > 0.0;
+        let lowest = &upper.dir;
         let along = normal.dot(lowest);
+        if !(along > 0.0) {
+            return None;
+        }
         let perpendicular = normal - lowest * along;
-        let sine = perpendicular.norm();
-        let k = (1.0 - upper / rho).max(0.0).sqrt();
-        // The sines of the corners' angles from `lowest`.
-        let sines = corners.each_ref().map(|v| {
-            let cosine = |i: u16| set.dir(i.into()).dot(lowest);
-            let c = lesser(cosine(v.pair.a), cosine(v.pair.b));
-            if c > 0.0 {
-                (1.0 - c * c).max(0.0).sqrt()
-            } else {
-                1.0
+        // The cosine of the corner nearest to `lowest`, and the corner that reaches farthest towards the normal.
+        let (mut near, mut far, mut far_corner) = (0.0, 0.0, VertexPair::INTERIOR);
+        for v in corners.iter().filter(|v| !v.pair.is_interior()) {
+            let products = |i: u16| {
+                let dir = set.dir(i.into());
+                (dir.dot(lowest), dir.dot(&perpendicular))
+            };
+            let (mut cosine, mut reach) = products(v.pair.a);
+            if v.pair.b != v.pair.a {
+                let other = products(v.pair.b);
+                (cosine, reach) = (lesser(other.0, cosine), lesser(other.1, reach));
             }
-        });
-        let least = lesser(lesser(sines[0], sines[1]), sines[2]);
+            near = larger(near, cosine);
+            if reach > far {
+                (far, far_corner) = (reach, v.pair);
+            }
+        }
+        let rho = if is_sphere {
+            self.sum()
+        } else {
+            arc_radius(set, far_corner, upper)?
+        };
+        if !(rho > upper.depth) {
+            return None;
+        }
+        let least = (1.0 - near * near).max(0.0).sqrt();
+        let sine = perpendicular.norm();
+        let way = perpendicular / sine;
+        let k = (1.0 - upper.depth / rho).sqrt();
         let ratio = lesser((1.0 + k) / (1.0 - k), MAX_RING_RATIO);
         // Faces as wide as the first ring are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
-        let tilt = (ratio * least).max(first);
-        if !(sine > tilt) || !(along > 0.0) {
+        let (mut tilt, mut value) = (larger(ratio * least, first), upper.depth);
+        let shift = -upper.point.v.dot(&way) / (rho - upper.depth);
+        if !is_sphere && shift > tilt {
+            (tilt, value) = (shift, value - 0.5 * (rho - upper.depth) * shift * shift);
+        }
+        if !(sine > tilt * along) {
             return None;
         }
-        let dir = lowest + perpendicular * (tilt / sine);
-        Some(dir / dir.norm())
+        let dir = lowest + way * tilt;
+        Some((dir / dir.norm(), value))
     }
 
     /// Returns the next direction to evaluate for a face with these corners and this unit normal. `gap`: the allowed
@@ -297,7 +325,8 @@ impl SphereFit {
     ) -> QueryDirection {
         self.update(set, upper);
         let is_used = self.failures < MAX_FAILURES;
-        let predicted = is_used.then(|| self.predict(set, corners, &normal));
+        let has_interior = corners.iter().any(|v| v.pair.is_interior());
+        let predicted = (is_used && !has_interior).then(|| self.predict(set, corners, &normal));
         if let Some((dir, value)) = predicted.flatten() {
             if (value - upper.depth).abs() <= SMALL_PART * gap {
                 // The upper bound is what the fit predicts.
@@ -308,16 +337,11 @@ impl SphereFit {
                 return QueryDirection { dir, source, value };
             }
         }
-        let tilted = if self.is_confirmed && self.sum() > 0.0 {
-            self.tilted_from_lowest(set, corners, &upper.dir, upper.depth, &normal, gap)
-        } else {
-            None
+        let tilted = is_used.then(|| self.tilted_from_lowest(set, corners, upper, &normal, gap));
+        let (dir, source, value) = match tilted.flatten() {
+            Some((dir, value)) => (dir, DirectionSource::Tilted, value),
+            None => (normal, DirectionSource::Normal, upper.depth),
         };
-        let (dir, source) = match tilted {
-            Some(dir) => (dir, DirectionSource::Tilted),
-            None => (normal, DirectionSource::Normal),
-        };
-        let value = upper.depth;
         QueryDirection { dir, source, value }
     }
 }
@@ -402,6 +426,34 @@ impl SphereFit {
     }
 }
 
+/// Returns the sum of the radii of two arcs, metres: that of obj1 and that of obj2, from the vertex of the upper bound to that
+/// of a corner. `None` if there is no turn, or if e and f of an object differ by more than [`SMOOTH_REL_TOL`] of their sum. A
+/// vertex that stays where it is is an arc of radius 0.
+fn arc_radius<const N: usize>(
+    set: &VertexSet<N>,
+    pair: VertexPair,
+    upper: &SupportPlane,
+) -> Option<f64> {
+    if pair.is_interior() {
+        return None;
+    }
+    let lowest = [upper.point.v1, -upper.point.v2];
+    let mut radius = 0.0;
+    for (object, i) in [pair.a, pair.b].into_iter().enumerate() {
+        let coords = set.coords(i.into());
+        let change = Vec3::from(coords.map(|c| c[object])) - lowest[object];
+        let turn = set.dir(i.into()) - upper.dir;
+        // e + f and f.
+        let (sum, f) = (turn.dot(&change), -upper.dir.dot(&change));
+        let turn2 = turn.norm_squared();
+        if !((sum - 2.0 * f).abs() <= SMOOTH_REL_TOL * sum && turn2 > MIN_ANGLE2) {
+            return None;
+        }
+        radius += sum / turn2;
+    }
+    Some(radius)
+}
+
 /// Returns the radii of the spheres of obj1 and obj2 on which two samples lie; 0 for an object without one.
 #[inline(always)]
 fn fit_radii(first: &FitSample, second: &FitSample, tolerance: f64) -> [f64; 2] {
@@ -458,12 +510,10 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
     // fits from three points on 7 %.)
     if !along_normal && (set.len() > 3 || fit.is_confirmed) {
         let corners = corners(set);
-        if !corners.iter().any(|v| v.pair.is_interior()) {
-            let next = fit.choose(set, &corners, dir, &query.upper, gap);
-            // Number by number: codegen, see README.
-            dir = Vec3::new(next.dir.x, next.dir.y, next.dir.z);
-            (source, value) = (next.source, next.value);
-        }
+        let next = fit.choose(set, &corners, dir, &query.upper, gap);
+        // Number by number: codegen, see README.
+        dir = Vec3::new(next.dir.x, next.dir.y, next.dir.z);
+        (source, value) = (next.source, next.value);
     }
     let sample = query.evaluate(set, &dir)?;
     match source {
@@ -475,8 +525,12 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
                 fit.radius = [0.0; 2];
             }
         }
-        // If D is this sphere, no direction near the one of the upper bound has a lower support value.
-        DirectionSource::Tilted => fit.is_confirmed = !(sample.h < upper),
+        DirectionSource::Tilted => {
+            // If D is this sphere, no direction near the one of the upper bound has a lower support value.
+            fit.is_confirmed = !(sample.h < upper);
+            let is_wrong = upper - sample.h > (1.0 + SMALL_PART) * (upper - value);
+            fit.failures += u32::from(is_wrong);
+        }
     }
     Ok((sample, source))
 }
@@ -485,7 +539,7 @@ pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::minkowski::support::MinkowskiDifference;
-    use crate::test_shapes::{Random, Shape, ball, corners, difference, hull};
+    use crate::test_shapes::{Random, Rotation, Shape, ball, corners, difference, ellipsoid, hull};
 
     const ROUNDING: f64 = 1e3 * EPSILON;
 
@@ -616,29 +670,90 @@ mod tests {
         assert_eq!(source, DirectionSource::Normal);
     }
 
+    /// An ellipsoid fits no sphere. Between x, along which its support value is least, and a direction 0.1 rad towards y it is
+    /// an arc of the radius 0.35² / 0.25.
+    #[test]
+    fn a_direction_is_tilted_along_an_arc_of_no_sphere() {
+        let body = ellipsoid(
+            Vec3::new(0.25, 0.35, 0.5),
+            Rotation::identity(),
+            Vec3::zeros(),
+        );
+        let md = difference(body, ball(Vec3::zeros(), 0.0));
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::<24>::EMPTY);
+        let corners = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|[y, z]| {
+            let n = Vec3::new(1.0, y, z).normalize();
+            query.evaluate(&mut set, &n).unwrap().vertex()
+        });
+        let radius = arc_radius(&set, corners[1].pair, &query.upper).unwrap();
+        assert!((radius - 0.49).abs() < 0.01, "{radius}");
+        let (gap, normal) = (1e-4, Vec3::new(1.0, 0.05, 0.0).normalize());
+        let tilted = |upper: &SupportPlane| {
+            SphereFit::default().tilted_from_lowest(&set, &corners, upper, &normal, gap)
+        };
+        let (n, value) = tilted(&query.upper).unwrap();
+        let first = 2.0 * (gap / radius).sqrt();
+        assert!(
+            (n.y / n.x - first).abs() < 1e-6 && n.z.abs() < ROUNDING && value == 0.25,
+            "{n}"
+        );
+        // If the lowest point of the arc is farther from the upper bound, that is next.
+        let mut upper = query.upper;
+        upper.point.v.y -= 0.01;
+        let (n, value) = tilted(&upper).unwrap();
+        let shift = 0.01 / (radius - 0.25);
+        assert!(
+            (n.y / n.x - shift).abs() < 1e-6 && value < 0.25,
+            "{n} {value}"
+        );
+        // A corner of a box is no arc.
+        let md = difference(
+            hull(&crate::test_shapes::corners(Vec3::repeat(1.0))),
+            ball(Vec3::zeros(), 0.0),
+        );
+        let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::<24>::EMPTY);
+        for n in [[1.0, 0.3, 0.2], [1.0, -0.1, 0.3]] {
+            query
+                .evaluate(&mut set, &Vec3::from(n).normalize())
+                .unwrap();
+        }
+        let pairs = [0, 1].map(VertexSet::<24>::pair_of_entry);
+        assert!(
+            pairs
+                .iter()
+                .all(|pair| arc_radius(&set, *pair, &query.upper).is_none())
+        );
+    }
+
     #[test]
     fn a_tilted_direction_is_between_the_lowest_and_the_normal() {
         let md = balls();
         let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::EMPTY);
         let corners = corners_around_x(&mut query, &mut set);
         let fit = SphereFit::warm([0.5, 0.25]);
-        let (gap, upper) = (1e-4, 0.15);
+        let gap = 1e-4;
+        let upper = query
+            .evaluate(&mut set, &Vec3::x())
+            .map(|_| query.upper)
+            .unwrap();
         for (normal, expected) in [
             (Vec3::new(1.0, 1.0, 0.0), true),
             (Vec3::x(), false),
             (Vec3::y(), false),
         ] {
-            let tilted =
-                fit.tilted_from_lowest(&set, &corners, &Vec3::x(), upper, &normal.normalize(), gap);
-            assert!(tilted.is_none_or(|n| (n.norm() - 1.0).abs() < ROUNDING
-                && n.x > normal.normalize().x
-                && n.y > 0.0));
+            let tilted = fit.tilted_from_lowest(&set, &corners, &upper, &normal.normalize(), gap);
+            assert!(
+                tilted.is_none_or(|(n, value)| (n.norm() - 1.0).abs() < ROUNDING
+                    && n.x > normal.normalize().x
+                    && n.y > 0.0
+                    && value == upper.depth)
+            );
             assert!(expected || tilted.is_none(), "{tilted:?}");
         }
         let near = [Vec3::x(); 3].map(|n| query.evaluate(&mut set, &n).unwrap().vertex());
         let n = Vec3::new(1.0, 1.0, 0.0).normalize();
-        let tilted = fit
-            .tilted_from_lowest(&set, &near, &Vec3::x(), upper, &n, gap)
+        let (tilted, _) = fit
+            .tilted_from_lowest(&set, &near, &upper, &n, gap)
             .unwrap();
         // The first ring is as wide as the gap allows.
         let first = 2.0 * (gap / 0.75).sqrt();

@@ -10,7 +10,7 @@
 //! | `Separated` | the separating axis ([`crate::minkowski::separating_axis`]) | 0 | sphere radii or 0 |
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
 //!
-//! A radius is 0 unless a prediction of the sphere fits was confirmed. `is_general` tells whether the direction is in
+//! A radius is 0 unless the sphere fits were confirmed. `is_general` tells whether the direction is in
 //! general position ([`crate::minkowski::general_position`]): the next query evaluates it as it is then, and tilts it
 //! otherwise.
 
