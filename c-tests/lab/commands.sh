@@ -78,6 +78,10 @@ run "a program with this library" "^depth 0.100" "" <<'END'
 cargo build --release
 cc target/program.c -Iinclude target/release/libccd.a -Wl,--gc-sections -s -lm -o target/program && target/program
 END
+run "one C program of the tests" " 0 broken guarantees" "" <<'END'
+cc -O2 -DOURS_ALONE -Ic-tests -Iinclude -Ic-tests/tests/stability c-tests/tests/stability/judged.c target/release/libccd.a -lm -o target/judged
+target/judged hard 3
+END
 run "the swap" "^depth 0.100" "" <<'END'
 mkdir -p target/swap && ln -sf "$PWD/target/release/libccd.so" target/swap/libccd.so.2
 LD_LIBRARY_PATH=$PWD/target/swap ./program
@@ -242,6 +246,8 @@ elsewhere "linux-inside.sh, in the archive" <<'END'
 linux.sh OUT
 sh cmake/packages/linux.sh OUT
 try-linux.sh SUITE ARCHIVE
+try-linux.sh bookworm
+try-linux.sh trixie
 ./run-on-warmccd.sh PROGRAM
 LD_LIBRARY_PATH=$PWD/lib PROGRAM
 cc example.c -Iinclude lib/libccd.a -Wl,--gc-sections -lm -o example && ./example
