@@ -92,6 +92,6 @@ pub const SAME_VALLEY_COS: f64 = 0.98;
 // Newton's step, and arcs.
 
 /// The largest relative difference of e and f at which D counts as smooth between two entries, and an object as an arc
-/// (measured: with 0.3 proofs of cones and cylinders to 1e-10 m take 8 % more support points, shallow ellipsoids as many); and the least squared sine
-/// between the changes of direction of the two entries.
+/// (measured: with 0.3 proofs of cones and cylinders to 1e-10 m take 8 % more support points, shallow ellipsoids as many);
+/// and the least squared sine between the changes of direction of the two entries.
 pub const SMOOTH_REL_TOL: f64 = 0.1;
