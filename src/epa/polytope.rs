@@ -183,7 +183,7 @@ impl<const F: usize> EpaPolytope<F> {
 
     /// Returns the corners of a face.
     #[inline(always)]
-    fn corners(&self, f: usize) -> [VertexPair; 3] {
+    pub fn corners(&self, f: usize) -> [VertexPair; 3] {
         let corners = self.corners[Self::in_range(f)];
         [0, 1, 2].map(|i| VertexPair::from_bits(corners >> (PAIR_BITS * i)))
     }

@@ -205,6 +205,28 @@ impl<const N: usize> VertexSet<N> {
         }
     }
 
+    /// Returns the known difference farthest along `n`, which need not be unit, of the vertices of three corners alone. At
+    /// least one corner is not the interior point.
+    #[inline(always)]
+    pub fn farthest_of_corners(&self, n: &Vec3, corners: &[VertexPair; 3]) -> Vertex {
+        let [x, y, z] = &self.coords;
+        let mut best = [f64::NEG_INFINITY; 2];
+        for corner in corners {
+            if corner.is_interior() {
+                continue;
+            }
+            for (lane, i) in [corner.a, corner.b].into_iter().enumerate() {
+                let i = Self::in_range(i.into());
+                let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
+                let tag = Self::INDEX_MARK | i as u64;
+                best[lane] = larger(best[lane], Self::tagged(h, tag));
+            }
+        }
+        let pair = Self::tagged_pair(best);
+        let w = self.difference(pair);
+        Vertex { w, pair }
+    }
+
     /// Returns a corner. `interior`: the coordinates of the interior point.
     #[inline(always)]
     pub fn vertex(&self, pair: VertexPair, interior: &Vec3) -> Vertex {
@@ -253,12 +275,23 @@ impl<const N: usize> VertexSet<N> {
         for i in 0..self.len.min(N) {
             for lane in 0..2 {
                 let h = n.x * x[i][lane] + n.y * y[i][lane] + n.z * z[i][lane];
-                let h = f64::from_bits(h.to_bits() & !Self::TAG_MASK | tag[lane]);
-                best[lane] = larger(best[lane], h);
+                best[lane] = larger(best[lane], Self::tagged(h, tag[lane]));
                 tag[lane] += step[lane];
             }
         }
-        let [a, b] = best.map(|h| (h.to_bits() & Self::INDEX_MASK) as u16);
+        Self::tagged_pair(best)
+    }
+
+    /// Replaces the low bits of a dot product by a tag.
+    #[inline(always)]
+    fn tagged(h: f64, tag: u64) -> f64 {
+        f64::from_bits(h.to_bits() & !Self::TAG_MASK | tag)
+    }
+
+    /// Returns the indices in the tags of two products.
+    #[inline(always)]
+    fn tagged_pair(products: [f64; 2]) -> VertexPair {
+        let [a, b] = products.map(|h| (h.to_bits() & Self::INDEX_MASK) as u16);
         VertexPair { a, b }
     }
 }
@@ -291,6 +324,29 @@ mod tests {
                 let found = n.dot(&set.difference(set.farthest(&n)));
                 assert!((found - most).abs() <= 1e-12, "{count} {found} {most}");
             }
+        }
+    }
+
+    #[test]
+    fn the_farthest_difference_of_corners_is_that_of_their_vertices() {
+        let mut r = Random::new(3);
+        let set = random_set::<20>(&mut r, 20);
+        for _ in 0..200 {
+            let n = r.vector(3.0);
+            let mut index = || r.within(0.0, 19.9) as u16;
+            let (a, b) = ([index(), index()], [index(), index()]);
+            let corners = [
+                VertexPair { a: a[0], b: b[0] },
+                VertexPair::INTERIOR,
+                VertexPair { a: a[1], b: b[1] },
+            ];
+            let pairs = a.into_iter().flat_map(|a| b.map(|b| VertexPair { a, b }));
+            let most = pairs
+                .map(|pair| n.dot(&set.difference(pair)))
+                .fold(f64::NEG_INFINITY, f64::max);
+            let found = set.farthest_of_corners(&n, &corners);
+            assert_eq!(found.w, set.difference(found.pair));
+            assert!((n.dot(&found.w) - most).abs() <= 1e-12);
         }
     }
 
