@@ -31,13 +31,20 @@ use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
-use crate::minkowski::tuning::{GENERIC_FRACTION, MAX_FAILURES, SMALL_PART};
+use crate::minkowski::tuning::MAX_STALLS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
 use crate::trace;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
+/// The least distance of an interior point from the ends of its segment, relative to the segment's length. Measured: with
+/// 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
+const MIN_END_FRACTION: f64 = 0.25;
+/// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
+/// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided; with 0.25 6 of 15
+/// million touches of turned hulls count as hits.
+const GENERIC_FRACTION: f64 = 0.44;
 
 /// Points of D whose hull contains the origin, within rounding.
 #[derive(Clone, Copy, Debug)]
@@ -138,7 +145,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns a point of D, in its interior or on its surface: on the segment from `from` to the support point along
-/// unit `dir`, as close to the origin as [`SMALL_PART`] allows. Queries `dir`, and the direction from the
+/// unit `dir`, as close to the origin as [`MIN_END_FRACTION`] allows. Queries `dir`, and the direction from the
 /// point to the origin.
 #[inline(never)]
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
@@ -151,8 +158,8 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
     let far = query.evaluate(set, dir)?;
     let far = set.point(far.pair);
     let closest = barycentric::segment(&Vec3::zeros(), &from.v, &far.v).weights[1];
-    let max = 1.0 - SMALL_PART;
-    let t = lesser(larger(closest, SMALL_PART), max);
+    let max = 1.0 - MIN_END_FRACTION;
+    let t = lesser(larger(closest, MIN_END_FRACTION), max);
     let mut inner = from.towards(&far, t);
     if !(inner.v.norm() > query.scale.contact_eps()) {
         inner = inner.towards(&far, 0.5);
@@ -298,7 +305,7 @@ fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
         // Negated for NaN.
         if !(distance2 > eps2 && distance2 < closest2) {
             stalls += 1;
-            if stalls > MAX_FAILURES {
+            if stalls > MAX_STALLS {
                 break;
             }
         }

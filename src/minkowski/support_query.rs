@@ -27,9 +27,13 @@ use crate::minkowski::general_position::{
 };
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::{MIN_TILT_RAD, SMALL_PART};
+use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
+
+/// The height of a known difference above the support plane of the result, in tolerances, from which the support functions
+/// contradict themselves. A lower one leaves the depth right within the tolerance.
+const CONTRADICTION_TOLERANCES: f64 = 0.25;
 
 /// A direction that the callbacks received.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -420,13 +424,13 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Returns whether a support function contradicts itself at the upper bound: a known difference is beyond the
-    /// support plane by more than rounding and [`SMALL_PART`] of the tolerance.
+    /// support plane by more than rounding and [`CONTRADICTION_TOLERANCES`].
     #[inline(always)]
     pub fn is_inconsistent<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let SupportPlane { dir, depth, .. } = self.upper;
         let height = dir.dot(&set.farthest_vertex(&dir).w) - depth;
         let tolerance = self.scale.tolerance(self.tolerance);
-        height > larger(self.scale.tie_eps(), SMALL_PART * tolerance)
+        height > larger(self.scale.tie_eps(), CONTRADICTION_TOLERANCES * tolerance)
     }
 }
 
