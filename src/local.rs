@@ -138,8 +138,8 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<Penetration, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
     let mut walk = Walk {
-        interior: query.interior.map(|point| point.v).unwrap_or_default(),
-        is_centered: query.interior.is_some(),
+        interior: query.center.map(|point| point.v).unwrap_or_default(),
+        is_centered: query.center.is_some(),
         query,
         set,
         fit: SphereFit::exact(),
@@ -530,7 +530,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 support::witnesses(&weights, corners.each_ref())
             }
         };
-        let is_center_outside = self.is_centered && self.query.interior.is_none();
+        let is_center_outside = self.is_centered && self.query.center.is_none();
         if is_center_outside || self.query.is_inconsistent(self.set) {
             return Ok(self.upper_bound(Status::InconsistentSupport));
         }
@@ -580,7 +580,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if tetrahedron.is_some_and(|t| t.inner_radius() > t.error) {
             return Ok(());
         }
-        let center = self.query.interior;
+        let center = self.query.center;
         contains_origin(self.query, self.set, center, &face.normal, false).map(|_| ())
     }
 }

@@ -156,7 +156,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         points,
     } = proof;
     // A support plane excludes the center from D: the polytope may contain an origin that is outside.
-    if request.center.is_some() && solver.query.interior.is_none() {
+    if request.center.is_some() && solver.query.center.is_none() {
         solver.prove_overlap(&dir)?;
         solver.is_inconsistent = true;
     }
