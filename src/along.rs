@@ -28,7 +28,7 @@ use crate::gjk::simplex::make_room;
 use crate::math::{Vec3, larger, lesser, normal};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::SMALL_PART;
+use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, choose_corner, discover};
 use crate::trace;
@@ -175,7 +175,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
         for _ in 0..MAX_STEPS {
             n = normal(&portal[0].w, &portal[1].w, &portal[2].w);
             let w = self.set.farthest_vertex(&n);
-            let level = SMALL_PART * self.tolerance() * n.dot(&self.dir)
+            let level = INSERT_HEIGHT_GAPS * self.tolerance() * n.dot(&self.dir)
                 + self.query.scale.height_eps() * n.norm();
             // A corner is above its own face only by rounding; taken again, it would repeat until MAX_STEPS.
             let is_corner = portal.iter().any(|v| v.pair == w.pair);

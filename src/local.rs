@@ -44,11 +44,12 @@ use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
 use crate::minkowski::newton::newton_step;
-use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
+use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_TILT_RAD, LARGE_PART, MAX_FAILURES, SAME_VALLEY_COS, SMALL_PART,
+    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILED_PREDICTIONS, MAX_MISS_REL,
+    MIN_GAIN_GAPS, SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
@@ -59,6 +60,16 @@ use crate::types::{Penetration, Settings, Status};
 /// minimum, the longest that ends with one takes 45; with 48 2 % of coincident centers end so at fine tolerances. A power of
 /// two: the index into a set of 60 takes 1 to 2 % more instructions.
 pub const MAX_WALK_POINTS: usize = 64;
+/// The difference of two depths, in tolerances, up to which they are equal. The rest of the tolerance is left for the error of
+/// the witness points.
+const EQUAL_TOLERANCES: f64 = 0.75;
+/// The angle, radians, between the normal of a narrow face and the direction of the upper bound up to which they are one
+/// minimum.
+const SAME_MINIMUM_RAD: f64 = 0.25 * CONFIRM_TILT_RAD;
+/// The squared angle, radians, up to which two directions are equal.
+const SAME_DIRECTION_ANGLE2: f64 = 1e-10;
+/// The tilt of the direction opposite to the start, radians.
+const OPPOSITE_TILT_RAD: f64 = 0.015;
 
 /// The next step of a walk.
 enum Step {
@@ -127,8 +138,8 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<Penetration, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
     let mut walk = Walk {
-        interior: query.interior.map(|point| point.v).unwrap_or_default(),
-        is_centered: query.interior.is_some(),
+        interior: query.center.map(|point| point.v).unwrap_or_default(),
+        is_centered: query.center.is_some(),
         query,
         set,
         fit: SphereFit::exact(),
@@ -151,7 +162,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         self.set.push(&self.query.upper.dir, &first);
         if !self.is_centered {
             // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
-            let dir = perpendicular(start) * CONFIRM_TILT_RAD - start;
+            let dir = perpendicular(start) * OPPOSITE_TILT_RAD - start;
             // Not stored in the set: as a corner it would make the portals wide.
             let opposite = self.query.evaluate_point(&(dir / dir.norm()))?;
             self.interior = (first.v + opposite.v) * 0.5;
@@ -237,7 +248,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let [a, b, c] = portal.each_ref().map(|v| v.w);
             let (x, y) = (b - a, c - a);
             let n = x.cross(&y);
-            let level = SMALL_PART * tolerance + height_eps;
+            let level = INSERT_HEIGHT_GAPS * tolerance + height_eps;
             let mut w = self.set.farthest_vertex(&n);
             // Above every corner: a corner is above its own face only by rounding, and would repeat until MAX_STEPS.
             let highest = larger(larger(n.dot(&x), n.dot(&y)), 0.0);
@@ -253,9 +264,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                     return Ok(step);
                 }
                 let mut prediction = None;
-                let worthwhile = self.query.upper.depth - SMALL_PART * tolerance;
+                let worthwhile = self.query.upper.depth - MIN_GAIN_GAPS * tolerance;
                 if !along_normal {
-                    if self.failures < MAX_FAILURES {
+                    if self.failures < MAX_FAILED_PREDICTIONS {
                         prediction = self.predict(&face);
                     }
                     if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
@@ -282,7 +293,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let sample = self.evaluate(&prediction.map_or(face.normal, |p| p.dir))?;
                 height_eps = self.query.scale.height_eps();
                 if let Some(p) = &prediction {
-                    let slack = SMALL_PART * larger(before - p.value, tolerance);
+                    let slack = MAX_MISS_REL * larger(before - p.value, tolerance);
                     if sample.h < p.value + slack {
                         return Ok(match self.is_minimum(p, sample.h, tolerance) {
                             true => Step::Fit(face, p.model),
@@ -324,8 +335,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
-                let small = SMALL_PART * CONFIRM_TILT_RAD;
-                lesser(small * small, tolerance / upper.depth)
+                lesser(SAME_MINIMUM_RAD * SAME_MINIMUM_RAD, tolerance / upper.depth)
             } else {
                 0.25 * cone * cone
             };
@@ -381,7 +391,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether the upper bound is `value`, metres.
     fn equals_upper_bound(&self, value: f64, tolerance: f64) -> bool {
-        (value - self.query.upper.depth).abs() <= LARGE_PART * tolerance
+        (value - self.query.upper.depth).abs() <= EQUAL_TOLERANCES * tolerance
     }
 
     /// Returns whether a prediction is the upper bound, and the model's witness points coincide after obj2 is moved by
@@ -392,7 +402,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let is_coincident = match prediction.model {
             Model::Sphere => {
                 let off = (self.fit.sum() - depth).powi(2);
-                turn2 * self.fit.sum() <= LARGE_PART * tolerance && turn2 * off <= depth * tolerance
+                turn2 * self.fit.sum() <= EQUAL_TOLERANCES * tolerance
+                    && turn2 * off <= depth * tolerance
             }
             Model::Smooth(_) => self.vertices_coincide(tolerance),
         };
@@ -409,7 +420,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Returns whether a prediction that came true with the support value `h`, metres, is a candidate.
     fn is_minimum(&self, prediction: &Prediction, h: f64, tolerance: f64) -> bool {
-        (h - prediction.value).abs() <= LARGE_PART * tolerance
+        (h - prediction.value).abs() <= EQUAL_TOLERANCES * tolerance
             && (prediction.model == Model::Sphere || self.vertices_coincide(tolerance))
     }
 
@@ -421,7 +432,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         tolerance: f64,
     ) -> Result<bool, Stop> {
         // The upper bound is lower: the walk continues from there.
-        if plane.depth > self.query.upper.depth + SMALL_PART * tolerance {
+        if plane.depth > self.query.upper.depth + MIN_GAIN_GAPS * tolerance {
             return Ok(false);
         }
         // The angle of the foot's distance from the closest edge is at most its tangent.
@@ -465,9 +476,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     ) -> Result<bool, Stop> {
         trace::stage("confirmation");
         let before = self.query.upper.depth;
-        let near = SMALL_PART * CONFIRM_TILT_RAD;
+        let [near, far] = CONFIRM_RANGE_RAD;
         // The center of a sphere is the same however far the direction.
-        let far = center_tolerance.map_or(CONFIRM_TILT_RAD / SMALL_PART, |_| f64::INFINITY);
+        let far = center_tolerance.map_or(far, |_| f64::INFINITY);
         let mut is_known = [false; 3];
         for k in 0..self.set.len() {
             let dir = self.set.dir(k);
@@ -492,7 +503,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             }
             let tilted = n + direction * CONFIRM_TILT_RAD;
             let sample = self.evaluate(&(tilted / tilted.norm()))?;
-            if sample.h < before - SMALL_PART * tolerance {
+            if sample.h < before - MIN_GAIN_GAPS * tolerance {
                 return Ok(false);
             }
         }
@@ -519,7 +530,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 support::witnesses(&weights, corners.each_ref())
             }
         };
-        let is_center_outside = self.is_centered && self.query.interior.is_none();
+        let is_center_outside = self.is_centered && self.query.center.is_none();
         if is_center_outside || self.query.is_inconsistent(self.set) {
             return Ok(self.upper_bound(Status::InconsistentSupport));
         }
@@ -569,7 +580,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if tetrahedron.is_some_and(|t| t.inner_radius() > t.error) {
             return Ok(());
         }
-        let center = self.query.interior;
+        let center = self.query.center;
         contains_origin(self.query, self.set, center, &face.normal, false).map(|_| ())
     }
 }
@@ -577,7 +588,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 /// Returns whether two unit vectors count as the same, by their difference: the product of vectors that are rounded to single
 /// precision differs from 1 by as much as that of vectors 3e-4 rad apart.
 fn is_same(a: &Vec3, b: &Vec3) -> bool {
-    (a - b).norm_squared() <= MIN_ANGLE2
+    (a - b).norm_squared() <= SAME_DIRECTION_ANGLE2
 }
 
 #[cfg(test)]

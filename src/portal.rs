@@ -30,7 +30,7 @@ use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
-use crate::minkowski::tuning::{LARGE_PART, MAX_FAILURES, SMALL_PART, TILT_GROWTH};
+use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
 
@@ -43,11 +43,30 @@ pub const MAX_STEPS: u32 = 100;
 /// regular tetrahedron (2.83), the position of a cylinder that slides on a plate jumps (test `continuity`).
 pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 
+/// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum and is refined after the
+/// origin is on its inner side. Measured: if every portal is refined so, deep overlaps take 4 to 13 % more instructions; with
+/// 0.15 boxes at medium depth take 11 % more, and spheres 8 % more support points.
+const SHALLOW_REL: f64 = 0.25;
+/// The number of tilts in discovery that may find no point on the other side of the ray before the perpendicular direction is
+/// evaluated. Measured: with 3 support points and instructions differ by less than 0.1 %, and rays out of boxes and cylinders
+/// take 3 % fewer support points.
+const MAX_TILTS: u32 = 5;
+/// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
+/// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
+/// support points in intersection tests. Without growth nearly touching spheres take up to 17 support points, not 15.
+const TILT_GROWTH: f64 = 1.4;
+/// The largest tilt in discovery is the larger of this many distances of v1 from the ray and [`WIDEST_TILT_EDGES`] lengths of
+/// the edge v1 v2, divided by the length of the ray in D. Measured: 4 in place of 3 takes 1 % fewer support points for the
+/// global minimum, and 13 % more for a local one of hulls, whose portals then extend into other valleys.
+const WIDEST_TILT_DISTANCES: f64 = 3.0;
+/// See [`WIDEST_TILT_DISTANCES`]. Measured: without the edge 21 % more support points.
+const WIDEST_TILT_EDGES: f64 = 0.75;
+
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
 pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
     let upper = query.upper.depth;
-    upper * upper < SMALL_PART * SMALL_PART * query.scale.size2()
+    upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
@@ -85,7 +104,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
                 let way = normalise_unscaled(&(towards_ray - ray * ray.dot(&towards_ray)));
                 (towards_ray, height) = (way.unwrap_or_else(|| perpendicular(ray)), 0.0);
                 // A tilt would be too small to find another point.
-                failures = MAX_FAILURES;
+                failures = MAX_TILTS;
             }
         }
     }
@@ -111,7 +130,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
             let sample = query.evaluate(set, &n)?;
             let sample_height = towards_ray.dot(&sample.w);
             if !(sample_height > 0.0) {
-                if failures >= MAX_FAILURES {
+                if failures >= MAX_TILTS {
                     return Ok(None);
                 }
                 failures += 1;
@@ -151,7 +170,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns the next direction of the discovery, of any length: that of the upper bound, tilted towards
-/// `perpendicular`; or `perpendicular` itself after [`MAX_FAILURES`] failures. `height`: dot product of the corners with
+/// `perpendicular`; or `perpendicular` itself after [`MAX_TILTS`] failures. `height`: dot product of the corners with
 /// `perpendicular`, m². `edge`: distance of the two corners, 0 for one corner, metres. `length`: approximate length of
 /// the ray in D, metres.
 #[inline(always)]
@@ -167,8 +186,10 @@ fn discovery_dir(
     // The distance of the corners from the ray.
     let off = -height / norm;
     let mut tilt = f64::INFINITY;
-    if failures < MAX_FAILURES {
-        let widest = LARGE_PART * (off / SMALL_PART).max(edge) / length;
+    if failures < MAX_TILTS {
+        // One product, after the maximum: codegen. (Measured: with two a hit takes 30 instructions more.)
+        let distances = WIDEST_TILT_DISTANCES / WIDEST_TILT_EDGES * off;
+        let widest = WIDEST_TILT_EDGES * distances.max(edge) / length;
         tilt = lesser(TILT_GROWTH * upper.depth / off, widest);
         for _ in 0..failures {
             tilt *= TILT_GROWTH;
@@ -295,7 +316,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
         let mut w = set.farthest_vertex(&normal);
-        if !(normal.dot(&w.w) - offset > SMALL_PART * gap * length) {
+        if !(normal.dot(&w.w) - offset > INSERT_HEIGHT_GAPS * gap * length) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }

@@ -408,12 +408,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         Ok(hit)
     }
 
-    /// Finds the global minimum of the depth from the state. `interior`: a point trusted to lie in D.
+    /// Finds the global minimum of the depth from the state. `center`: the difference of trusted centers.
     /// `accepts_local`: a local minimum within the tolerance counts as converged.
     #[inline(never)]
     fn minimize(
         &self,
-        interior: Option<&SupportPoint>,
+        center: Option<&SupportPoint>,
         limits: &EpaLimits,
         accepts_local: bool,
         state: &mut WarmStart,
@@ -424,11 +424,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             true => (state.dir, state.is_general),
             false => (ray, false),
         };
-        let mut query = SupportQuery::new(&self.difference, interior, limits.gap.tolerance);
+        let mut query = SupportQuery::new(&self.difference, center, limits.gap.tolerance);
         // Most queries of separated objects end here, before the request is made.
         let first = query.evaluate_first(&dir, is_general)?;
         let request = EpaRequest {
-            center: interior,
+            center,
             ray,
             limits: *limits,
             wants_points: self.settings.points || self.settings.pos,

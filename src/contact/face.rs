@@ -9,7 +9,7 @@ use crate::math::{Vec3, larger};
 use nalgebra::UnitComplex;
 
 /// Largest number of corners of a face: one more than eight, so that a face of eight is known to be complete.
-pub const MAX_CORNERS: usize = 9;
+pub const MAX_FACE_CORNERS: usize = 9;
 /// The first three tilt directions, unit.
 pub const THREE_DIRECTIONS: [Vec2; 3] = [
     Vec2::new(1.0, 0.0),
@@ -17,7 +17,7 @@ pub const THREE_DIRECTIONS: [Vec2; 3] = [
     Vec2::new(-0.5, -0.866_025_403_784_438_6),
 ];
 /// Largest number of corners of a region: each side of one face adds at most one to the corners of the other.
-pub const MAX_CONTACTS: usize = 2 * MAX_CORNERS;
+pub const MAX_CONTACTS: usize = 2 * MAX_FACE_CORNERS;
 
 /// A support vertex in the contact frame (z: its drop), and its direction.
 #[derive(Clone, Copy, Default)]
@@ -51,7 +51,7 @@ impl FaceSample {
 /// The face of one object.
 #[derive(Clone, Copy, Default)]
 pub struct Face {
-    pub corners: Polygon<MAX_CORNERS>,
+    pub corners: Polygon<MAX_FACE_CORNERS>,
     /// Height of the support plane along the outward normal, metres.
     pub support_height: f64,
     /// The effective slop, metres.
@@ -62,7 +62,7 @@ pub struct Face {
     /// the smallest radius R.
     pub rounded_halfwidth: f64,
     /// The samples that found the corners, in their order.
-    pub samples: FixedVec<FaceSample, MAX_CORNERS>,
+    pub samples: FixedVec<FaceSample, MAX_FACE_CORNERS>,
     /// The tilt that finds corners, a tangent.
     pub tilt_tan: f64,
     /// True if all corners are known and sharp.

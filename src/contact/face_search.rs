@@ -27,7 +27,7 @@
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
 //! the whole query; here only the support function is evaluated along tilted normals.
 
-use crate::contact::face::{Face, FaceSample, MAX_CORNERS, Motion, THREE_DIRECTIONS};
+use crate::contact::face::{Face, FaceSample, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS};
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache};
 use crate::contact::tuning::{
@@ -239,7 +239,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     fn find_corner_beyond_side(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
         // A corner costs up to two queries, and each unknown core one.
         let is_last = self.query_count + 2 + self.unknown_cores() > MAX_QUERIES;
-        if self.face.samples.len() == MAX_CORNERS || is_last {
+        if self.face.samples.len() == MAX_FACE_CORNERS || is_last {
             return Ok(None);
         }
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
@@ -340,14 +340,14 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         // A corner found twice may differ by the rounding of both.
         let merged = larger(self.face.slop, MIN_SLOP_ROUNDINGS * self.face.coord_eps);
         let samples = self.face.samples;
-        let corners: Polygon<MAX_CORNERS> = samples.iter().map(|s| s.corner).collect();
+        let corners: Polygon<MAX_FACE_CORNERS> = samples.iter().map(|s| s.corner).collect();
         let corners = corners.simplified(merged, self.min_corner_height());
         let radii = samples.iter().map(|s| s.radius);
         let radius = radii.fold(f64::INFINITY, lesser);
         // A full list may lack corners, and the support plane may be higher than all corners.
         let is_sharp = samples.iter().all(|s| s.corner == s.found);
         let has_highest = corners.iter().any(|corner| corner.z <= self.face.coord_eps);
-        self.face.is_complete = is_sharp && has_highest && samples.len() < MAX_CORNERS;
+        self.face.is_complete = is_sharp && has_highest && samples.len() < MAX_FACE_CORNERS;
         self.face.rounded_halfwidth = (2.0 * radius * self.face.slop).sqrt();
         self.face.corners = corners;
     }

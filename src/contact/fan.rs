@@ -4,7 +4,7 @@
 //! The vertices of a feature, in order around the deepest point.
 
 use crate::contact::feature::four_directions;
-use crate::contact::overlap::{Corners, MAX_CORNERS, in_overlap, volume_of};
+use crate::contact::overlap::{Corners, MAX_POLYGON_CORNERS, in_overlap, volume_of};
 use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
@@ -31,7 +31,7 @@ pub struct Fan {
 
 impl Fan {
     /// Largest number of vertices: those of a polygon, one that encloses the deepest point, and the repeated first one.
-    pub const CAPACITY: usize = MAX_CORNERS + 2;
+    pub const CAPACITY: usize = MAX_POLYGON_CORNERS + 2;
     /// The fan without vertices.
     pub const EMPTY: Self = Self {
         vertices: [ZERO; Self::CAPACITY],

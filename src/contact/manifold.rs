@@ -18,11 +18,13 @@ use crate::contact::face::{Face, MAX_CONTACTS};
 use crate::contact::face_search::faces;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
-use crate::contact::tuning::MAX_TILT_TAN;
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
+
+/// The sine between two segments up to which they count as parallel: 14°.
+const PARALLEL_SINE: f64 = 0.25;
 
 /// One point of a contact manifold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -173,7 +175,7 @@ fn overlap_of_segments(
 ) -> Polygon<MAX_CONTACTS> {
     let (u, v, slack) = (offset(p, q), offset(r, s), halfwidths[0] + halfwidths[1]);
     let (size, sine) = (u.norm() * v.norm(), u.perp(&v));
-    if sine.abs() > MAX_TILT_TAN * size {
+    if sine.abs() > PARALLEL_SINE * size {
         let [t, k] = [v, u].map(|along| offset(p, r).perp(&along) / sine);
         let is_on_both = [t, k].iter().all(|t| (0.0..=1.0).contains(t));
         return is_on_both.then(|| p.lerp(q, t)).into_iter().collect();

@@ -13,7 +13,9 @@
 //!
 //! Valid for the swapped pair too: faces are stored by the orientation of the frame, not by object.
 
-use crate::contact::face::{Face, FaceSample, MAX_CONTACTS, MAX_CORNERS, Motion, THREE_DIRECTIONS};
+use crate::contact::face::{
+    Face, FaceSample, MAX_CONTACTS, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS,
+};
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::tuning::CACHED_LEAN;
 use crate::geometry::fixed_vec::FixedVec;
@@ -42,7 +44,7 @@ pub struct CachedFace {
     pub tilt_tan: f32,
     /// Not 0 if the samples are all corners of a polygon.
     pub is_complete: f32,
-    samples: [CachedSample; MAX_CORNERS],
+    samples: [CachedSample; MAX_FACE_CORNERS],
 }
 
 /// Warm start data of the contact manifold of one pair. All zeros: empty.
@@ -67,9 +69,9 @@ pub struct ManifoldCache {
 /// Returns samples whose directions reproduce a polygon of which all corners are known: the outward direction of each
 /// side, three directions for a point, and also the two directions along a segment.
 fn confirming_samples(
-    corners: &Polygon<MAX_CORNERS>,
+    corners: &Polygon<MAX_FACE_CORNERS>,
     tilt_tan: f64,
-) -> FixedVec<FaceSample, MAX_CORNERS> {
+) -> FixedVec<FaceSample, MAX_FACE_CORNERS> {
     let n = corners.len().max(1);
     let count = [3, 3, 4].get(n).copied().unwrap_or(n);
     let sample = |i: usize| {

@@ -9,9 +9,9 @@ use crate::geometry::polygon::Vec2;
 use crate::math::{Vec3, larger};
 
 /// Largest number of corners of a polygon.
-pub const MAX_CORNERS: usize = 12;
+pub const MAX_POLYGON_CORNERS: usize = 12;
 /// The corners of a polygon, counterclockwise.
-pub type Corners = FixedVec<Vec3, MAX_CORNERS>;
+pub type Corners = FixedVec<Vec3, MAX_POLYGON_CORNERS>;
 
 /// The overlap of a polygon with a plane.
 #[derive(Clone, Copy)]

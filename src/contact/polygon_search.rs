@@ -10,7 +10,7 @@
 //!    both, by what these directions allow. It is an estimate, because corners differ in their drops.
 //! 3. Go around the sides. Where the shift is more than [`CORNER_SHIFT_REL`], evaluate the direction in which both ends have
 //!    the same height. A vertex that is higher and enlarges the overlap is a new corner; otherwise the side is closed.
-//! 4. End after a round without a new corner, or at [`MAX_CORNERS`].
+//! 4. End after a round without a new corner, or at [`MAX_POLYGON_CORNERS`].
 //!
 //! A round takes the sides in the order in which they were found, not the one with the largest shift first: those of a disc
 //! are all alike, and their rounding errors would choose which of them still become corners.
@@ -26,7 +26,7 @@ use crate::contact::feature::{ContactQuery, four_directions};
 use crate::contact::frame::outwards;
 use crate::contact::limit::Limit;
 use crate::contact::overlap::{
-    Corners, MAX_CORNERS, Overlap, in_overlap, volume_beyond, volume_of,
+    Corners, MAX_POLYGON_CORNERS, Overlap, in_overlap, volume_beyond, volume_of,
 };
 use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, LEAST_GROWTH, TILT_FACTOR};
 use crate::geometry::fixed_vec::FixedVec;
@@ -35,7 +35,7 @@ use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, SupportMap};
 
 /// Largest number of rounds: each but the last finds a corner.
-const MAX_ROUNDS: usize = MAX_CORNERS;
+const MAX_ROUNDS: usize = MAX_POLYGON_CORNERS;
 /// Least drop of both ends of a side, in depths, beyond which no corner is in the overlap: between two directions tilted by T
 /// a surface whose radius is the extent rises by TILT_FACTOR² / 2 depths at most.
 const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
@@ -59,7 +59,7 @@ struct Corner {
 
 /// The corners found so far, in the order of finding; `next` is their order around the polygon.
 struct Found {
-    corners: FixedVec<Corner, MAX_CORNERS>,
+    corners: FixedVec<Corner, MAX_POLYGON_CORNERS>,
     /// The drop that all corners have in common.
     common: f64,
     own: Overlap,
@@ -131,7 +131,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
                     continue;
                 }
                 let new = found.corners.len();
-                if new == MAX_CORNERS {
+                if new == MAX_POLYGON_CORNERS {
                     return Ok(());
                 }
                 found.insert(side, at, inside, out);

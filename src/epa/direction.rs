@@ -20,7 +20,7 @@ use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::{MAX_FAILURES, SMALL_PART};
+use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::replace_corner;
 use crate::trace;
@@ -30,7 +30,7 @@ use crate::trace;
 /// curved pair takes 0.1 to 0.5 support points fewer.
 pub const MAX_REFINEMENTS: usize = 4;
 /// The largest number of known differences that replace a corner before a direction is evaluated. Insensitive: 5 to 10.
-const MAX_REPLACED: u32 = 2 * MAX_FAILURES;
+const MAX_REPLACED: u32 = 10;
 
 /// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: three points of D, the
 /// normal of which points outward, and which the ray crosses. `lower`: the lower bound of the depth, metres. `tolerance`:
@@ -51,7 +51,7 @@ pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
     for _ in 0..MAX_REFINEMENTS {
         let upper = query.upper;
         let target = upper.depth - tolerance;
-        let level = query.scale.height_eps() + SMALL_PART * tolerance;
+        let level = query.scale.height_eps() + INSERT_HEIGHT_GAPS * tolerance;
         let Some(plane) = refine_face(set, face, &upper.dir, level) else {
             break;
         };

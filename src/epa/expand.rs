@@ -8,7 +8,7 @@
 //! 1. Find the closest face. Its distance, less the error, is the lower bound of the depth. If the origin is inside
 //!    and the gap to the upper bound is allowed, the loop has converged.
 //! 2. Insert the known difference farthest along the face's normal, without a callback, if it closes at least
-//!    [`LARGE_PART`] of the gap between the face and the upper bound: of all known vertices, or from [`MAX_SCANNED`] on of
+//!    [`INSERT_GAIN_REL`] of the gap between the face and the upper bound: of all known vertices, or from [`MAX_SCANNED`] on of
 //!    those of the face's corners.
 //! 3. Otherwise evaluate the callbacks, along the face's normal or along a direction that a sphere fit suggests
 //!    ([`evaluate_beyond`]). Insert the point if it is above the face.
@@ -29,7 +29,6 @@ use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
-use crate::minkowski::tuning::LARGE_PART;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::is_shallow;
 use crate::trace;
@@ -43,6 +42,10 @@ const EXACT_PLANES_REL: f64 = 1e-11;
 /// limit deep ellipsoids take 14 % more instructions, hulls of 162 corners and capsules 3 %; with 6 hulls of 42 corners take
 /// 5 % more support points, with 12 1.5 %.
 const MAX_SCANNED: usize = 16;
+
+/// The part of the gap between the closest face and the upper bound that a known difference must close to be inserted without
+/// a support call. Insensitive: 0.45 to 0.8; without it deep boxes take 50 % more instructions.
+const INSERT_GAIN_REL: f64 = 0.75;
 
 /// The limits of a query.
 #[derive(Clone, Copy, Debug)]
@@ -138,8 +141,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         };
         let height = normal.dot(&w.w) - offset;
         let distance = closest.key.sqrt();
-        let is_gain =
-            !(closest.key > 0.0) || height * distance > LARGE_PART * (upper - distance) * offset;
+        let is_gain = !(closest.key > 0.0)
+            || height * distance > INSERT_GAIN_REL * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
         let has_room = has_larger || polytope.has_room(N - MAX_REFINEMENTS - set.len());
         if !(height > level && is_gain && has_room) {

@@ -62,7 +62,7 @@ const NEXT: [i8; 4] = [1, 1, -2, 0];
 const PREVIOUS: [i8; 4] = [2, -1, -1, 0];
 /// The largest number of faces: the low bits of a key hold the index of its face.
 pub const MAX_FACES: usize = 4096;
-const INDEX_MASK: u64 = MAX_FACES as u64 - 1;
+const FACE_MASK: u64 = MAX_FACES as u64 - 1;
 /// An upper bound of the relative error of a key that is caused by the index bits. It affects the order of the faces,
 /// not their planes.
 const KEY_ERROR_REL: f64 = MAX_FACES as f64 * f64::EPSILON;
@@ -81,13 +81,13 @@ pub struct EpaPolytope<const F: usize> {
     ulp: f64,
     /// The key of each face: its signed squared distance d|d| / |N|², with the index of the face in the low bits.
     keys: [f64; F],
-    /// The half-edge on the other side of each of the three edges. The fourth slot is used during an insertion: a new
-    /// face stores the half-edge that its edge 0 replaces, for [`EpaPolytope::revert`]; a visible face stores the link
-    /// to the next lower half-edge on the stack of [`EpaPolytope::walk_visible`].
+    /// The half-edge on the other side of each of the three edges. The fourth slot is used during an insertion, by
+    /// [`EpaPolytope::replaced_mut`] for a new face and by [`EpaPolytope::below_mut`] for a visible one.
     twins: [[u16; 4]; F],
     /// The corners 0, 1 and 2 of each face, [`PAIR_BITS`] each, from the low bits on.
     corners: [u64; F],
-    /// The next free face for a free face, the next visible face for a visible one.
+    /// Two lists: the next free face for a free face, [`EpaPolytope::next_free`]; the next visible face for a visible one,
+    /// [`EpaPolytope::next_visible`]. After an insertion the second list is the head of the first.
     next: [u16; F],
     /// The first free face.
     free: usize,
@@ -176,6 +176,33 @@ impl<const F: usize> EpaPolytope<F> {
         self.twins.as_flattened_mut()[Self::edge_in_range(h)] = twin as u16;
     }
 
+    /// Returns the half-edge that edge 0 of a new face replaces, for [`EpaPolytope::revert`].
+    #[inline(always)]
+    fn replaced_mut(&mut self, new: usize) -> &mut u16 {
+        &mut self.twins[Self::in_range(new)][3]
+    }
+
+    /// Returns the half-edge below that of a visible face on the stack of [`EpaPolytope::walk_visible`].
+    #[inline(always)]
+    fn below_mut(&mut self, visible: usize) -> &mut u16 {
+        &mut self.twins[Self::in_range(visible)][3]
+    }
+
+    #[inline(always)]
+    fn next_free(&self, free: usize) -> usize {
+        usize::from(self.next[Self::in_range(free)])
+    }
+
+    #[inline(always)]
+    fn next_visible(&self, visible: usize) -> usize {
+        usize::from(self.next[Self::in_range(visible)])
+    }
+
+    #[inline(always)]
+    fn set_next(&mut self, f: usize, next: usize) {
+        self.next[Self::in_range(f)] = next as u16;
+    }
+
     #[inline(always)]
     fn step(h: usize, by: &[i8; 4]) -> usize {
         h.wrapping_add_signed(isize::from(by[h & 3]))
@@ -254,7 +281,7 @@ impl<const F: usize> EpaPolytope<F> {
     fn key(f: usize, square: f64) -> f64 {
         // Faces in use have finite keys.
         let finite = if square < f64::MAX { square } else { f64::MAX };
-        f64::from_bits(finite.to_bits() & !INDEX_MASK | f as u64)
+        f64::from_bits(finite.to_bits() & !FACE_MASK | f as u64)
     }
 
     /// Makes the polytope a tetrahedron. Returns whether its volume is above the rounding of points of this size, metres;
@@ -362,7 +389,7 @@ impl<const F: usize> EpaPolytope<F> {
         let least = |[a, b, c, d]: [f64; 4]| lesser(lesser(a, b), lesser(c, d));
         let key = lesser(least(even), least(odd));
         ClosestFace {
-            face: (key.to_bits() & INDEX_MASK) as usize,
+            face: (key.to_bits() & FACE_MASK) as usize,
             key,
         }
     }
@@ -437,7 +464,7 @@ impl<const F: usize> EpaPolytope<F> {
         let mut edge = 4 * first;
         // The top of the stack of half-edges from which the walk continues; its face stores the one below.
         let mut top = edge + 1;
-        self.twins[Self::in_range(first)][3] = edge as u16 + 2;
+        *self.below_mut(first) = edge as u16 + 2;
         let mut free = self.free;
         let begin = 4 * free;
         let mut previous = begin;
@@ -449,9 +476,9 @@ impl<const F: usize> EpaPolytope<F> {
                 let face = Self::in_range(twin >> 2);
                 if self.keys[face] != f64::INFINITY {
                     self.keys[face] = f64::INFINITY;
-                    self.next[Self::in_range(tail)] = face as u16;
+                    self.set_next(tail, face);
                     tail = face;
-                    self.twins[face][3] = top as u16;
+                    *self.below_mut(face) = top as u16;
                     top = Self::step(twin, &PREVIOUS);
                     edge = Self::step(twin, &NEXT);
                     continue;
@@ -468,13 +495,13 @@ impl<const F: usize> EpaPolytope<F> {
                 self.set_twin(twin, fan);
                 self.set_twin(previous | 1, fan | 2);
                 previous = fan;
-                free = usize::from(self.next[f]);
+                free = self.next_free(free);
             }
             if top == usize::from(STACK_BOTTOM) {
                 break;
             }
             edge = top;
-            let below = &mut self.twins[Self::in_range(edge >> 2)][3];
+            let below = self.below_mut(edge >> 2);
             top = usize::from(core::mem::replace(below, STACK_BOTTOM));
         }
         // The first case: no face was hidden.
@@ -486,7 +513,8 @@ impl<const F: usize> EpaPolytope<F> {
         self.set_twin(previous | 1, begin | 2);
         self.used = self.used.max(free.min(F));
         self.num_corners += 1;
-        self.next[Self::in_range(tail)] = free as u16;
+        // The visible faces become free.
+        self.set_next(tail, free);
         self.free = first;
         if self.min_n2 < f64::INFINITY {
             self.error += INSERTION_ERROR_ULPS * self.ulp;
@@ -523,7 +551,7 @@ impl<const F: usize> EpaPolytope<F> {
         }
         self.keys[f] = Self::key(f, square);
         self.twins[f][0] = twin as u16;
-        self.twins[f][3] = edge as u16;
+        *self.replaced_mut(f) = edge as u16;
     }
 
     /// Returns whether the edges of a fan, from its first half-edge to its last one, are a closed loop. The first and
@@ -557,10 +585,10 @@ impl<const F: usize> EpaPolytope<F> {
     fn revert(&mut self, first: usize, tail: usize, free: usize) {
         let mut f = self.free;
         while f != free && f < F {
-            let [twin, _, _, before] = self.twins[f];
-            self.set_twin(usize::from(twin), usize::from(before));
+            let replaced = usize::from(*self.replaced_mut(f));
+            self.set_twin(self.twin(4 * f), replaced);
             self.keys[f] = f64::INFINITY;
-            f = usize::from(self.next[f]);
+            f = self.next_free(f);
         }
         let mut f = first;
         for _ in 0..F {
@@ -569,7 +597,7 @@ impl<const F: usize> EpaPolytope<F> {
             if f == tail {
                 break;
             }
-            f = usize::from(self.next[i]);
+            f = self.next_visible(f);
         }
     }
 

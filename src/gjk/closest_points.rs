@@ -25,11 +25,16 @@ use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{MAX_EXTRAPOLATION_TAN, MAX_FAILURES, SMALL_PART};
+use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_MISS_REL, MAX_STALLS, MIN_GAIN_GAPS};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
 use crate::types::Status;
+
+/// The largest tangent of the angle from the normal of the best plane to a direction that is evaluated. Measured: without a
+/// limit distances take 4 to 12 % more support points; with 1.0 two of 2,100 exactly touching pairs take 882 of them (campaign
+/// `wide`, seed 4242).
+const MAX_EXTRAPOLATION_TAN: f64 = 0.6;
 
 /// Stop criterion of the bounds.
 pub struct Goal {
@@ -149,7 +154,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let (mut is_step, mut was_limited) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_STEPS {
-                match self.add_farthest(SMALL_PART * self.gap(goal)) {
+                match self.add_farthest(INSERT_HEIGHT_GAPS * self.gap(goal)) {
                     None => return Ok(Status::Converged),
                     Some(true) => (),
                     Some(false) => break,
@@ -164,7 +169,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
                 }
                 closest = self.upper;
             }
-            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_FAILURES) else {
+            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
                 return Ok(Status::Rounding);
             };
             is_step = !self.query_prediction(&dir, self.gap(goal))?;
@@ -243,13 +248,13 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
         // It raises the lower bound, and not above the upper one.
         let is_useful =
-            |value: f64| value < bound.depth - SMALL_PART * gap && -value < self.upper + gap;
+            |value: f64| value < bound.depth - MIN_GAIN_GAPS * gap && -value < self.upper + gap;
         let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
             return Ok(false);
         };
         let sample = self.query.evaluate_signed(&mut self.set, &n, false)?;
         self.was_prediction = true;
-        self.fit.is_confirmed = sample.h <= value + SMALL_PART * (bound.depth - value);
+        self.fit.is_confirmed = sample.h <= value + MAX_MISS_REL * (bound.depth - value);
         Ok(true)
     }
 

@@ -11,8 +11,8 @@
 //! computational geometry (H. Edelsbrunner, E. Mücke, "Simulation of Simplicity", 1990) with a number for the symbol.
 //!
 //! 1. *Vector.* No ω turns the directions parallel to it. Two are in use, chosen by the z of n ([`MAX_POLE_Z`]).
-//! 2. *Size.* The support value of the tilted direction is at most tilt · size above that of n, which may be a quarter of
-//!    the tolerance. The error that such a callback has left is about 7e-16 / tilt times the radius, so a tilt below
+//! 2. *Size.* The support value of the tilted direction is at most tilt · size above that of n, a rise that
+//!    [`MAX_RISE_TOLERANCES`] limits. The error that such a callback has left is about 7e-16 / tilt times the radius, so a tilt below
 //!    [`MIN_TILT_RAD`] is of no use.
 //! 3. *Confirmation.* If the tolerance allows no tilt, directions are evaluated as they are, and a separation or a
 //!    result counts only if it and one more direction, tilted by [`MIN_TILT_RAD`], do not contradict each other
@@ -38,10 +38,12 @@
 
 use crate::math::{POLE, Vec3, lesser};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::{MIN_TILT_RAD, SMALL_PART};
+use crate::minkowski::tuning::MIN_TILT_RAD;
 
 /// The largest tilt, radians.
 pub const MAX_TILT_RAD: f64 = 1e-8;
+/// The largest increase of the support value by the tilt, in tolerances.
+const MAX_RISE_TOLERANCES: f64 = 0.25;
 /// Whether directions are tilted at all: not in single precision.
 pub const HAS_TILT: bool = MIN_TILT_RAD <= MAX_TILT_RAD;
 /// The largest |z| of a unit direction that is turned about [`POLE`]; others are turned about POLE without its z. Each
@@ -51,7 +53,7 @@ const MAX_POLE_Z: f64 = 0.55;
 /// Returns whether a tolerance, metres, allows the largest tilt.
 #[inline(always)]
 pub fn allows_largest_tilt(tolerance: f64, scale: &Scale) -> bool {
-    let size = SMALL_PART * tolerance / MAX_TILT_RAD;
+    let size = MAX_RISE_TOLERANCES * tolerance / MAX_TILT_RAD;
     size * size > scale.size2()
 }
 
@@ -61,7 +63,7 @@ pub fn tilt_rad(tolerance: f64, scale: &Scale, least: f64) -> f64 {
     if !HAS_TILT {
         return 0.0;
     }
-    let tilt = lesser(MAX_TILT_RAD, SMALL_PART * tolerance / scale.size());
+    let tilt = lesser(MAX_TILT_RAD, MAX_RISE_TOLERANCES * tolerance / scale.size());
     if tilt >= MIN_TILT_RAD { tilt } else { least }
 }
 

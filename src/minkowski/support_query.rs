@@ -17,8 +17,8 @@
 //!
 //! # Interior point
 //!
-//! The callers' centers are trusted to lie in their objects. If their difference, the interior point, lies beyond
-//! an evaluated support plane, a center is outside its object: [`SupportQuery::interior`] becomes `None`, and
+//! The callers' centers are trusted to lie in their objects. If their difference lies beyond
+//! an evaluated support plane, a center is outside its object: [`SupportQuery::center`] becomes `None`, and
 //! results that are based on it are discarded. Only evaluated directions can detect this.
 
 use crate::math::{Vec3, from_real, larger, lesser, to_real};
@@ -27,9 +27,13 @@ use crate::minkowski::general_position::{
 };
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::{MIN_TILT_RAD, SMALL_PART};
+use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
+
+/// The height of a known difference above the support plane of the result, in tolerances, from which the support functions
+/// contradict themselves. A lower one leaves the depth right within the tolerance.
+const CONTRADICTION_TOLERANCES: f64 = 0.25;
 
 /// A direction that the callbacks received.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,20 +151,20 @@ pub struct SupportQuery<'q, A, B> {
     /// point, because entries of a vertex set are moved and removed.
     pub upper: SupportPlane,
     /// The difference of the callers' centers, as long as no support plane excludes it from D.
-    pub interior: Option<&'q SupportPoint>,
+    pub center: Option<&'q SupportPoint>,
 }
 
 impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
-    /// Makes a query without evaluations. `interior`: the difference of trusted centers. `tolerance`: see
+    /// Makes a query without evaluations. `center`: the difference of trusted centers. `tolerance`: see
     /// [`SupportQuery::tolerance`].
     #[inline(always)]
     pub fn new(
         md: &'q MinkowskiDifference<A, B>,
-        interior: Option<&'q SupportPoint>,
+        center: Option<&'q SupportPoint>,
         tolerance: f64,
     ) -> Self {
         let mut scale = Scale::default();
-        if let Some(point) = interior {
+        if let Some(point) = center {
             scale.note(point);
         }
         Self {
@@ -173,7 +177,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
                 point: SupportPoint::default(),
                 tilt: 0.0,
             },
-            interior,
+            center,
         }
     }
 
@@ -396,37 +400,37 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
-    /// Stores a plane if its support value is the least, and tests the interior point against it.
+    /// Stores a plane if its support value is the least, and tests the center against it.
     #[inline(always)]
     fn store_upper(&mut self, plane: &SupportPlane) {
         if plane.depth < self.upper.depth {
             self.upper = *plane;
         }
-        if let Some(interior) = self.interior {
-            let height = plane.dir.dot(&interior.v) - plane.depth;
+        if let Some(center) = self.center {
+            let height = plane.dir.dot(&center.v) - plane.depth;
             if height > 0.0 {
-                self.test_interior(height);
+                self.test_center(height);
             }
         }
     }
 
-    /// Drops the interior point if it is beyond a support plane by more than rounding, `height` in metres.
+    /// Drops the center if it is beyond a support plane by more than rounding, `height` in metres.
     #[cold]
     #[inline(never)]
-    fn test_interior(&mut self, height: f64) {
+    fn test_center(&mut self, height: f64) {
         if height > self.scale.tie_eps() {
-            self.interior = None;
+            self.center = None;
         }
     }
 
     /// Returns whether a support function contradicts itself at the upper bound: a known difference is beyond the
-    /// support plane by more than rounding and [`SMALL_PART`] of the tolerance.
+    /// support plane by more than rounding and [`CONTRADICTION_TOLERANCES`].
     #[inline(always)]
     pub fn is_inconsistent<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let SupportPlane { dir, depth, .. } = self.upper;
         let height = dir.dot(&set.farthest_vertex(&dir).w) - depth;
         let tolerance = self.scale.tolerance(self.tolerance);
-        height > larger(self.scale.tie_eps(), SMALL_PART * tolerance)
+        height > larger(self.scale.tie_eps(), CONTRADICTION_TOLERANCES * tolerance)
     }
 }
 
@@ -573,7 +577,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interior_point_beyond_a_plane_is_dropped() {
+    fn a_center_beyond_a_plane_is_dropped() {
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 1.0));
         for (x, is_inside) in [(1.9, true), (2.0, true), (2.0 + 1e3 * EPSILON, false)] {
             let v1 = Vec3::x() * x;
@@ -586,7 +590,7 @@ mod tests {
             let mut set = VertexSet::<4>::EMPTY;
             query.evaluate(&mut set, &Vec3::y()).unwrap();
             query.evaluate(&mut set, &Vec3::x()).unwrap();
-            assert_eq!(query.interior.is_some(), is_inside, "{x}");
+            assert_eq!(query.center.is_some(), is_inside, "{x}");
         }
     }
 

@@ -13,12 +13,12 @@
 
 use crate::math::{EPSILON, larger, lesser};
 use crate::minkowski::support::SupportPoint;
-use crate::minkowski::tuning::SMALL_PART;
+use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 
 /// The relative tolerance of a default query: the largest gap between the bounds, as a fraction of the depth.
 pub const GAP_REL: f64 = 1e-3;
 /// The largest effective tolerance, as a fraction of the size of D.
-const MAX_TOLERANCE_REL: f64 = SMALL_PART * GAP_REL;
+const MAX_TOLERANCE_REL: f64 = 0.25 * GAP_REL;
 
 /// The error of a triple product of points or edges of D, in ulps of the product of their lengths. Derived: 8
 /// for the products and their sums. In double precision more is allowed, because support functions are less exact.
@@ -127,7 +127,7 @@ pub struct Bounds {
     pub allowed: f64,
     /// The height up to which a point counts as on a plane: [`Scale::height_eps`].
     pub rounding: f64,
-    /// The height above which a known difference is taken in place of a support call: [`SMALL_PART`].
+    /// The height above which a known difference is taken in place of a support call: [`INSERT_HEIGHT_GAPS`].
     pub insert_height: f64,
 }
 
@@ -152,7 +152,7 @@ impl GapLimit {
         Bounds {
             allowed,
             rounding,
-            insert_height: rounding + SMALL_PART * allowed,
+            insert_height: rounding + INSERT_HEIGHT_GAPS * allowed,
         }
     }
 }
@@ -200,7 +200,7 @@ mod tests {
             insert_height,
         } = gap.bounds(&scale, 1.001);
         assert!((allowed - GAP_REL * (1.001 - allowed)).abs() < 1e-15);
-        assert!(rounding == scale.height_eps() && insert_height > SMALL_PART * allowed);
+        assert!(rounding == scale.height_eps() && insert_height > INSERT_HEIGHT_GAPS * allowed);
         assert_eq!(gap.allowed(&scale, 1e-5), 1e-6);
     }
 }
