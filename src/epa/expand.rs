@@ -144,8 +144,8 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         let is_gain = !(closest.key > 0.0)
             || height * distance > INSERT_GAIN_REL * (upper - distance) * offset;
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
-        let has_room = has_larger || polytope.has_room(N - MAX_REFINEMENTS - set.len());
-        if !(height > level && is_gain && has_room) {
+        let has_room = || has_larger || polytope.has_room(N - MAX_REFINEMENTS - set.len());
+        if !(height > level && is_gain && has_room()) {
             let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
             let vertices = |set: &VertexSet<N>| polytope.face(set, interior, face);
             let (sample, source) =
