@@ -32,7 +32,7 @@ use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, choose_corner, discover};
 use crate::trace;
-use crate::types::{Penetration, Settings, Status};
+use crate::types::{Settings, Solution, Status};
 
 /// The smallest effective tolerance, in rounding errors of a height: twice the least gap of a portal that is
 /// perpendicular to the ray.
@@ -59,7 +59,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     dir: &Vec3,
     settings: &Settings,
-) -> Result<Penetration, Stop> {
+) -> Result<Solution, Stop> {
     trace::stage("ray");
     let mut query = SupportQuery::new(md, None, settings.tolerance);
     let first = query.evaluate_first(dir, false)?;
@@ -195,7 +195,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
 
     /// Returns the result for a lower bound, metres. The witness points are those of the point of the portal at which
     /// the ray crosses it.
-    fn result(&self, portal: &[Vertex; 3], lower: f64) -> Penetration {
+    fn result(&self, portal: &[Vertex; 3], lower: f64) -> Solution {
         let (depth, max_iterations) = (self.upper(), self.settings.max_iterations);
         let status = Status::of_early_end(self.budget(), max_iterations, MAX_PROVEN_POINTS);
         let [a, b, c] = portal.each_ref().map(|v| v.w);
@@ -205,7 +205,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
         let weights = barycentric::triangle(&(self.dir * crossing), &a, &b, &c).weights;
         let corners = portal.map(|v| self.set.point(v.pair));
         let (point1, point2) = support::witnesses(&weights, corners.each_ref());
-        Penetration {
+        Solution {
             depth,
             depth_lower: lesser(larger(lower, 0.0), depth),
             dir: self.dir,
@@ -215,7 +215,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             iterations: self.iterations,
             is_general: self.exit_plane.is_general(),
             status: status.unless(depth - lower <= self.tolerance()),
-            ..Penetration::default()
+            ..Solution::default()
         }
     }
 }
@@ -238,7 +238,7 @@ mod tests {
         difference(shape, |_: &Vec3| Vec3::zeros())
     }
 
-    fn along(md: &Difference, dir: &Vec3, tolerance: f64, max_iterations: u64) -> Penetration {
+    fn along(md: &Difference, dir: &Vec3, tolerance: f64, max_iterations: u64) -> Solution {
         let settings = Settings {
             max_iterations,
             ..Settings::new(tolerance)
@@ -249,7 +249,7 @@ mod tests {
 
     /// Checks the bounds of a hit against the distance `exact` at which the ray leaves D; that the depth is the parameter
     /// of the support plane of `normal`; and that the witness points are on the ray.
-    fn check(md: &Difference, hit: &Penetration, exact: f64, tolerance: f64) {
+    fn check(md: &Difference, hit: &Solution, exact: f64, tolerance: f64) {
         let gap = hit.depth - hit.depth_lower;
         assert!(
             hit.depth >= exact - ULPS && hit.depth_lower <= exact + ULPS,

@@ -15,7 +15,7 @@ use crate::contact::manifold_cache;
 use crate::ffi::arena::LargeBuffers;
 use crate::ffi::warm::NAME;
 pub use crate::math::Real;
-use crate::math::{Vec3, from_real, lower_to_real, to_real};
+use crate::math::{Vec3, from_real, to_real};
 pub use crate::minkowski::support::Fault as Error;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::if_overlapping;
@@ -24,8 +24,8 @@ pub use crate::minkowski::validate::Check;
 use crate::minkowski::warm_start::WarmStart;
 pub use crate::query::signed_distance::DistanceOptions;
 use crate::query::{Pair, Solver, unit_direction};
-use crate::types;
-pub use crate::types::{Settings, Status};
+use crate::types::Solution;
+pub use crate::types::{Contact, Distance, Penetration, Settings, Status};
 
 /// A convex shape, given by its support function.
 ///
@@ -112,83 +112,6 @@ impl Warm {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ManifoldCache(manifold_cache::ManifoldCache);
 
-/// Result of a penetration query: an overlap. A depth is sound if moving the second shape by
-/// `depth * dir` separates the two; it may exceed the least depth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Penetration {
-    /// Penetration depth, metres, >= 0: moving the second shape by `depth * dir` separates the two.
-    pub depth: Real,
-    /// Lower bound of the globally least depth (in [`penetration_along`]: of the depth along its
-    /// direction), metres; 0 if there is none. Proven if the centers lie in their shapes; only
-    /// [`penetration_proven`] does not rely on them.
-    pub depth_lower: Real,
-    /// Penetration direction, unit: the second shape moves along it.
-    pub dir: [Real; 3],
-    /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in
-    /// [`penetration_along`].
-    pub normal: [Real; 3],
-    /// Contact position, [`Settings::pos`]: the center of pressure, an estimate of the centroid of the
-    /// overlap volume, projected along `normal` to the plane midway between the two support planes; the
-    /// deeper the overlap, the nearer it is instead to a point between the centers, beside that plane.
-    /// If `status` is not converged, and in [`penetration_along`] and [`penetration_planar`], the middle of the witness
-    /// points.
-    pub pos: [Real; 3],
-    /// Witness point of the first shape, [`Settings::points`]: in the shape and on its support plane,
-    /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).
-    pub point1: [Real; 3],
-    /// Witness point of the second shape, [`Settings::points`]: as `point1`.
-    pub point2: [Real; 3],
-    /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
-    /// rounded up.
-    pub support_points: u64,
-    /// Number of iterations of the solver.
-    pub iterations: u64,
-    /// Why the search ended; the result is less exact than requested unless this is
-    /// [`Status::Converged`].
-    pub status: Status,
-}
-
-/// Result of [`signed_distance`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Distance {
-    /// Proven lower bound of the signed distance, metres: the gap along `normal`, or minus the depth
-    /// if the shapes overlap.
-    pub distance: Real,
-    /// Proven upper bound of the signed distance, metres; at most the tolerance above `distance`
-    /// if `status` is converged, unless `distance` is above `max_distance`.
-    pub distance_upper: Real,
-    /// Unit, from the first shape to the second: moving the second along it increases the distance.
-    pub normal: [Real; 3],
-    /// Witness point on the surface of the first shape with its margin, [`Settings::points`].
-    pub point1: [Real; 3],
-    /// Witness point on the surface of the second shape with its margin, [`Settings::points`].
-    pub point2: [Real; 3],
-    /// Number of support points: half of the calls of both shapes' [`Shape::support`] together,
-    /// rounded up.
-    pub support_points: u64,
-    /// Number of iterations of the solver.
-    pub iterations: u64,
-    /// Why the search ended; the bounds may differ by more than the tolerance, and the overlap may be
-    /// undecided (`distance < 0 < distance_upper`), unless this is [`Status::Converged`].
-    pub status: Status,
-}
-
-/// One point of a contact manifold.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contact {
-    /// Point within the slop of the surface of the first shape.
-    pub point1: [Real; 3],
-    /// `point1 - depth * normal`, a point within the slop of the surface of the second shape. If the
-    /// faces do not overlap in projection, the closest point of the second shape's face instead.
-    pub point2: [Real; 3],
-    /// Depth at the contact, metres; negative if the shapes are apart there.
-    pub depth: Real,
-    /// Contact id: the same while the contact moves with either shape, never 0; 0 without a cache.
-    pub id: u32,
-}
-
 /// Runs a query with the state of `warm`, or a cold one without it, and stores the new state. A fault leaves the state
 /// unchanged. Returns `None` if the shapes are separated.
 fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
@@ -197,7 +120,7 @@ fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
     settings: &Settings,
     warm: Option<&mut Warm>,
     solver: Solver,
-) -> Result<Option<types::Penetration>, Error> {
+) -> Result<Option<Solution>, Error> {
     let centers = match (a.center(), b.center()) {
         (Some(v1), Some(v2)) => Some(SupportPoint::new(from_real(v1), from_real(v2))),
         _ => None,
@@ -216,23 +139,6 @@ fn run<A: Shape + ?Sized, B: Shape + ?Sized>(
 /// Returns a caller's shape as a support function of the solvers.
 fn support_of<S: Shape + ?Sized>(shape: &S) -> impl SupportMap {
     |dir: &Vec3| from_real(shape.support(to_real(dir)))
-}
-
-impl From<types::Penetration> for Penetration {
-    fn from(hit: types::Penetration) -> Self {
-        Penetration {
-            depth: hit.depth as Real,
-            depth_lower: lower_to_real(hit.depth_lower),
-            dir: to_real(&hit.dir),
-            normal: to_real(&hit.normal),
-            pos: to_real(&hit.pos),
-            point1: to_real(&hit.point1),
-            point2: to_real(&hit.point2),
-            support_points: hit.support_points,
-            iterations: hit.iterations,
-            status: hit.status,
-        }
-    }
 }
 
 /// Defines a penetration query by its name, its direction argument, if any, and its solver.
@@ -347,17 +253,7 @@ pub fn signed_distance<A: Shape + ?Sized, B: Shape + ?Sized>(
     };
     // A distance always has a result.
     let found = run(a, b, &settings, warm, Solver::Distance(*options))?.unwrap_or_default();
-    let (distance, distance_upper) = found.distance_bounds();
-    Ok(Distance {
-        distance,
-        distance_upper,
-        normal: to_real(&found.normal),
-        point1: to_real(&found.point1),
-        point2: to_real(&found.point2),
-        support_points: found.support_points,
-        iterations: found.iterations,
-        status: found.status,
-    })
+    Ok(found.into())
 }
 
 /// Computes the contact manifold: the overlap of the two faces along `normal`, projected along it
@@ -413,15 +309,9 @@ pub fn contacts<'r, A: Shape + ?Sized, B: Shape + ?Sized>(
         cache,
         max,
     )?;
-    for (out, contact) in room.iter_mut().zip(manifold.iter()) {
-        *out = Contact {
-            point1: to_real(&contact.point1),
-            point2: to_real(&contact.point2),
-            depth: contact.depth as Real,
-            id: contact.id,
-        };
-    }
-    Ok(&room[..manifold.len()])
+    let room = &mut room[..manifold.len()];
+    room.copy_from_slice(&manifold);
+    Ok(room)
 }
 
 query!(

@@ -54,7 +54,7 @@ use crate::minkowski::tuning::{
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{MAX_STEPS, discover, replace_corner};
 use crate::trace;
-use crate::types::{Penetration, Settings, Status};
+use crate::types::{Settings, Solution, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
 /// minimum, the longest that ends with one takes 45; with 48 2 % of coincident centers end so at fine tolerances. A power of
@@ -135,7 +135,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     start: &Vec3,
     is_general: bool,
     settings: &Settings,
-) -> Result<Penetration, Stop> {
+) -> Result<Solution, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
     let mut walk = Walk {
         interior: query.center.map(|point| point.v).unwrap_or_default(),
@@ -177,7 +177,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, mut ray: Vec3) -> Result<Penetration, Stop> {
+    fn run(&mut self, mut ray: Vec3) -> Result<Solution, Stop> {
         for _ in 0..MAX_STEPS {
             if let Some(status) = self.limit() {
                 return Ok(self.upper_bound(status));
@@ -516,7 +516,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         face: &Face,
         plane: &SupportPlane,
         model: Option<Model>,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         let SupportPlane {
             dir, depth, point, ..
         } = plane;
@@ -536,7 +536,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         }
         self.prove_overlap(face)?;
         self.query.confirm_upper()?;
-        let mut hit = Penetration {
+        let mut hit = Solution {
             depth: *depth,
             dir: *dir,
             normal: *dir,
@@ -553,11 +553,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Returns the upper bound, with the vertices of its support point for witness points.
-    fn upper_bound(&self, status: Status) -> Penetration {
+    fn upper_bound(&self, status: Status) -> Solution {
         let SupportPlane {
             depth, dir, point, ..
         } = self.query.upper;
-        Penetration {
+        Solution {
             depth,
             dir,
             normal: dir,
@@ -566,7 +566,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             iterations: self.iterations,
             status,
             is_general: self.query.upper.is_general(),
-            ..Penetration::default()
+            ..Solution::default()
         }
     }
 
@@ -606,7 +606,7 @@ mod tests {
         ..Settings::new(if EPSILON < 1e-10 { 1e-7 } else { 1e-4 })
     };
 
-    type Walked = Result<Penetration, Stop>;
+    type Walked = Result<Solution, Stop>;
 
     /// Returns the hull of a ball about `at` and the point `at` + `tip`.
     fn drop(radius: f64, tip: Vec3, at: Vec3) -> impl Fn(&Vec3) -> Vec3 {
@@ -642,7 +642,7 @@ mod tests {
     /// coincide after obj2 is moved by the depth.
     fn check<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
-        hit: &Penetration,
+        hit: &Solution,
         r: &mut Random,
     ) {
         let tolerance = SETTINGS.tolerance;

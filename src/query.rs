@@ -41,7 +41,7 @@ use crate::minkowski::warm_start::WarmStart;
 use crate::paper::gao::{self, Until};
 use crate::query::signed_distance::DistanceOptions;
 use crate::trace;
-use crate::types::{Penetration, Settings, Status};
+use crate::types::{Settings, Solution, Status};
 
 /// A query by name: what C and Rust callers choose between.
 #[derive(Clone, Copy, Debug)]
@@ -142,7 +142,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         solver: Solver,
         state: &mut WarmStart,
         arena: &mut dyn Arena,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         let solver = solver.normalised()?;
         // A distance starts from the axis.
         if !matches!(solver, Solver::Distance(_)) {
@@ -176,7 +176,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         solver: Solver,
         state: &mut WarmStart,
         arena: &mut dyn Arena,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         match solver {
             Solver::Intersect => self.intersect(state),
             Solver::Global => {
@@ -239,7 +239,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(never)]
     fn prove_overlap(
         &self,
-        hit: &mut Penetration,
+        hit: &mut Solution,
         set: &mut VertexSet<CAPACITY>,
         is_planar: bool,
     ) -> Result<(), Stop> {
@@ -275,7 +275,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not. The result is blank.
     #[inline(always)]
-    fn intersect(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn intersect(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
         let (first, is_general) = match state.is_overlap() {
             true => (state.dir, state.is_general),
             false => (self.cold_start(), false),
@@ -286,12 +286,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         if !(state.is_overlap() && state.depth > 0.0) {
             *state = WarmStart::towards(dir, HAS_TILT);
         }
-        Ok(Penetration::default())
+        Ok(Solution::default())
     }
 
     /// Finds a local minimum of the depth by the local search ([`crate::local`]). If that ends without one,
     /// runs the global search from the direction of the upper bound.
-    fn local(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn local(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
         let hit = self.descend(state)?;
         if hit.status == Status::Converged {
             return Ok(hit);
@@ -310,7 +310,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Runs the local search. Not inlined, so that its stack frame is released before the global search runs.
     #[inline(never)]
-    fn descend(&self, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn descend(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
         let remembered = state.direction();
         let start = remembered.unwrap_or_else(|| self.cold_start());
         let tolerance = self.settings.tolerance;
@@ -332,7 +332,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// unless the lower depth closes the gap to the lower bound.
     #[cold]
     #[inline(never)]
-    fn improve_locally(&self, hit: &mut Penetration, limits: &EpaLimits) -> Result<bool, Fault> {
+    fn improve_locally(&self, hit: &mut Solution, limits: &EpaLimits) -> Result<bool, Fault> {
         let settings = Settings {
             tolerance: limits.gap.tolerance * 0.01,
             max_iterations: limits.max_iterations.saturating_sub(hit.iterations),
@@ -349,7 +349,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let is_minimum = found.status == Status::Converged
             && found.depth <= hit.depth + query.scale.tolerance(settings.tolerance);
         if is_minimum {
-            *hit = Penetration {
+            *hit = Solution {
                 depth_lower: hit.depth_lower.min(found.depth),
                 iterations: hit.iterations + found.iterations,
                 status: hit.status,
@@ -365,14 +365,14 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds the global minimum of the depth within the tolerance. The proof uses only support points; the
     /// centers select only where the search starts.
     #[inline(always)]
-    fn proven(&self, state: &mut WarmStart, arena: &mut dyn Arena) -> Result<Penetration, Stop> {
+    fn proven(&self, state: &mut WarmStart, arena: &mut dyn Arena) -> Result<Solution, Stop> {
         let limits = EpaLimits::new(&self.settings, 0.0, MAX_PROVEN_POINTS);
         self.minimize(None, &limits, false, state, Some(arena))
     }
 
     /// Computes the least distance by which obj2 must move along unit `dir` to separate the objects.
     #[inline(never)]
-    fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Solution, Stop> {
         let mut set = VertexSet::EMPTY;
         let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
         self.prove_overlap(&mut hit, &mut set, false)?;
@@ -384,7 +384,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds a local minimum of the depth by W. Gao's method with the shortcut (Algorithms 4 and 5), from the
     /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
     /// perpendicular to it are searched.
-    fn incremental(&self, plane: Option<Vec3>, state: &mut WarmStart) -> Result<Penetration, Stop> {
+    fn incremental(&self, plane: Option<Vec3>, state: &mut WarmStart) -> Result<Solution, Stop> {
         let mut start = state.direction().unwrap_or_else(|| self.cold_start());
         if let Some(m) = plane.filter(|_| HAS_TILT && !state.is_general) {
             start = tilted_in_plane(&start, &m, MAX_TILT_RAD);
@@ -418,7 +418,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         accepts_local: bool,
         state: &mut WarmStart,
         arena: Option<&mut dyn Arena>,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         let ray = self.cold_start();
         let (dir, is_general) = match state.is_overlap() {
             true => (state.dir, state.is_general),
@@ -447,7 +447,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         accepts_local: bool,
         state: &mut WarmStart,
         arena: Option<&mut dyn Arena>,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         let mut set = VertexSet::EMPTY;
         let mut hit = epa::penetration::penetration(query, first, request, arena, &mut set, state)?;
         if hit.status == Status::Converged {
@@ -471,7 +471,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     fn contact_position<const N: usize>(
         &self,
         set: &VertexSet<N>,
-        hit: &Penetration,
+        hit: &Solution,
     ) -> Result<Vec3, Fault> {
         let tolerance = self.settings.tolerance;
         contact_position(&self.difference, set, hit, self.centers.as_ref(), tolerance)
@@ -480,7 +480,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Computes the contact position without known vertices. Not inlined, so that its set is on the stack only here.
     #[cold]
     #[inline(never)]
-    fn cold_contact_position(&self, hit: &Penetration) -> Result<Vec3, Fault> {
+    fn cold_contact_position(&self, hit: &Solution) -> Result<Vec3, Fault> {
         let set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         self.contact_position(&set, hit)
     }

@@ -7,7 +7,7 @@
 //! the depth so far, metres. The last line of a query has its status and bounds.
 
 use crate::math::Vec3;
-use crate::types::Penetration;
+use crate::types::Solution;
 use core::cell::Cell;
 
 const IS_ON: bool = cfg!(feature = "trace");
@@ -47,7 +47,7 @@ pub fn direction(dir: &Vec3, h: f64, upper: f64) {
 
 /// Prints the end of a query; `None`: it has no result.
 #[inline(always)]
-pub fn end(hit: Option<&Penetration>) {
+pub fn end(hit: Option<&Solution>) {
     if IS_ON {
         match hit {
             Some(hit) => eprintln!(

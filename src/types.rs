@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The settings and the result of a query.
+//! The settings of a query; its [`Solution`], as the solvers compute it; and the records that callers get: [`Penetration`],
+//! [`Distance`] and [`Contact`], in the callers' scalar. Here alone results are rounded to it. The C structs of
+//! `ffi/warm/` are copies of the records.
 //!
 //! All guarantees assume convex objects and support functions that return a farthest point. If a query notices that a
 //! support function contradicts itself ([`Status::InconsistentSupport`]), `depth_lower` is 0, and `depth` is the least
 //! support value of the points that were returned. Moving obj2 by it need not separate the objects.
 
-use crate::math::{ITERATION_CAP, Real, Vec3, lower_to_real};
+use crate::math::{ITERATION_CAP, Real, Vec3, lower_to_real, to_real};
 
 /// Tolerance, iteration limit and requested results of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,7 +87,7 @@ impl Status {
 
 /// Depth, direction and position of an overlap, or of the gap of separated objects, whose depth is negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Penetration {
+pub struct Solution {
     /// Metres. Moving obj2 by `depth * dir` separates the objects. Negative only in a signed distance, for separated
     /// objects: minus the lower bound of their distance.
     pub depth: f64,
@@ -113,7 +115,7 @@ pub struct Penetration {
     pub is_general: bool,
 }
 
-impl Penetration {
+impl Solution {
     /// Returns whether the distance of the witness points is `depth` along the normal, within the tolerance, and
     /// at most sqrt(2 · depth · tolerance) perpendicular to it.
     pub fn has_sound_witnesses(&self, tolerance: f64) -> bool {
@@ -135,16 +137,120 @@ impl Penetration {
         }
     }
 
-    /// Returns the lower and the upper bound of the signed distance, metres, rounded outwards; 0 is +0.
-    pub fn distance_bounds(&self) -> (Real, Real) {
-        (
-            lower_to_real(0.0 - self.depth),
-            0.0 - lower_to_real(self.depth_lower),
-        )
-    }
-
     /// Returns the middle of the witness points.
     pub fn middle(&self) -> Vec3 {
         (self.point1 + self.point2) * 0.5
     }
+}
+
+/// Result of a penetration query: an overlap. A depth is sound if moving the second shape by
+/// `depth * dir` separates the two; it may exceed the least depth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Penetration {
+    /// Penetration depth, metres, >= 0: moving the second shape by `depth * dir` separates the two.
+    pub depth: Real,
+    /// Lower bound of the globally least depth (in [`penetration_along`](crate::penetration_along): of the depth along its
+    /// direction), metres; 0 if there is none. Proven if the centers lie in their shapes; only
+    /// [`penetration_proven`](crate::penetration_proven) does not rely on them.
+    pub depth_lower: Real,
+    /// Penetration direction, unit: the second shape moves along it.
+    pub dir: [Real; 3],
+    /// Contact normal, unit: normal of the separating plane. Equal to `dir` except in
+    /// [`penetration_along`](crate::penetration_along).
+    pub normal: [Real; 3],
+    /// Contact position, [`Settings::pos`]: the center of pressure, an estimate of the centroid of the
+    /// overlap volume, projected along `normal` to the plane midway between the two support planes; the
+    /// deeper the overlap, the nearer it is instead to a point between the centers, beside that plane.
+    /// If `status` is not converged, and in [`penetration_along`](crate::penetration_along) and [`penetration_planar`](crate::penetration_planar), the middle of the witness
+    /// points.
+    pub pos: [Real; 3],
+    /// Witness point of the first shape, [`Settings::points`]: in the shape and on its support plane,
+    /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).
+    pub point1: [Real; 3],
+    /// Witness point of the second shape, [`Settings::points`]: as `point1`.
+    pub point2: [Real; 3],
+    /// Number of support points: half of the calls of both shapes' [`Shape::support`](crate::Shape::support) together,
+    /// rounded up.
+    pub support_points: u64,
+    /// Number of iterations of the solver.
+    pub iterations: u64,
+    /// Why the search ended; the result is less exact than requested unless this is
+    /// [`Status::Converged`].
+    pub status: Status,
+}
+
+impl From<Solution> for Penetration {
+    #[inline(always)]
+    fn from(hit: Solution) -> Self {
+        Self {
+            depth: hit.depth as Real,
+            depth_lower: lower_to_real(hit.depth_lower),
+            dir: to_real(&hit.dir),
+            normal: to_real(&hit.normal),
+            pos: to_real(&hit.pos),
+            point1: to_real(&hit.point1),
+            point2: to_real(&hit.point2),
+            support_points: hit.support_points,
+            iterations: hit.iterations,
+            status: hit.status,
+        }
+    }
+}
+
+/// Result of [`signed_distance`](crate::signed_distance).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Distance {
+    /// Proven lower bound of the signed distance, metres: the gap along `normal`, or minus the depth
+    /// if the shapes overlap.
+    pub distance: Real,
+    /// Proven upper bound of the signed distance, metres; at most the tolerance above `distance`
+    /// if `status` is converged, unless `distance` is above `max_distance`.
+    pub distance_upper: Real,
+    /// Unit, from the first shape to the second: moving the second along it increases the distance.
+    pub normal: [Real; 3],
+    /// Witness point on the surface of the first shape with its margin, [`Settings::points`].
+    pub point1: [Real; 3],
+    /// Witness point on the surface of the second shape with its margin, [`Settings::points`].
+    pub point2: [Real; 3],
+    /// Number of support points: half of the calls of both shapes' [`Shape::support`](crate::Shape::support) together,
+    /// rounded up.
+    pub support_points: u64,
+    /// Number of iterations of the solver.
+    pub iterations: u64,
+    /// Why the search ended; the bounds may differ by more than the tolerance, and the overlap may be
+    /// undecided (`distance < 0 < distance_upper`), unless this is [`Status::Converged`].
+    pub status: Status,
+}
+
+impl From<Solution> for Distance {
+    /// Rounds the bounds outwards; 0 is +0.
+    #[inline(always)]
+    fn from(found: Solution) -> Self {
+        Self {
+            distance: lower_to_real(0.0 - found.depth),
+            distance_upper: 0.0 - lower_to_real(found.depth_lower),
+            normal: to_real(&found.normal),
+            point1: to_real(&found.point1),
+            point2: to_real(&found.point2),
+            support_points: found.support_points,
+            iterations: found.iterations,
+            status: found.status,
+        }
+    }
+}
+
+/// One point of a contact manifold.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// Point within the slop of the surface of the first shape.
+    pub point1: [Real; 3],
+    /// `point1 - depth * normal`, a point within the slop of the surface of the second shape. If the
+    /// faces do not overlap in projection, the closest point of the second shape's face instead.
+    pub point2: [Real; 3],
+    /// Depth at the contact, metres; negative if the shapes are apart there.
+    pub depth: Real,
+    /// Contact id: the same while the contact moves with either shape, never 0; 0 without a cache.
+    pub id: u32,
 }

@@ -47,13 +47,13 @@ use crate::contact::fan::{Fan, area2};
 use crate::contact::feature::ContactQuery;
 use crate::contact::frame::ContactFrame;
 use crate::contact::limit::Limit;
-use crate::contact::overlap::Corners;
+use crate::contact::overlap::ContactPolygon;
 use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE, MAX_KNOWN, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
-use crate::types::Penetration;
+use crate::types::Solution;
 
 /// Returns the contact position of a hit: the center of pressure of a shallow one, the deep position of a deep one, and a
 /// mean of both between. `set`: the known vertices of the search.
@@ -64,7 +64,7 @@ use crate::types::Penetration;
 pub fn contact_position<A: SupportMap, B: SupportMap, const N: usize>(
     md: &MinkowskiDifference<A, B>,
     set: &VertexSet<N>,
-    hit: &Penetration,
+    hit: &Solution,
     centers: Option<&SupportPoint>,
     tolerance: f64,
 ) -> Result<Vec3, Fault> {
@@ -84,7 +84,7 @@ pub fn contact_position<A: SupportMap, B: SupportMap, const N: usize>(
 /// position is midway between them. It counts where these points are closer than the depth, so that it is at most half the
 /// depth from both objects.
 #[inline(always)]
-fn deep_position(hit: &Penetration, centers: &SupportPoint) -> (Vec3, f64) {
+fn deep_position(hit: &Solution, centers: &SupportPoint) -> (Vec3, f64) {
     let t = hit.depth / (hit.depth - hit.normal.dot(&centers.v));
     let [from, to] = DEEP_RANGE;
     // Negated for NaN.
@@ -103,7 +103,7 @@ fn deep_position(hit: &Penetration, centers: &SupportPoint) -> (Vec3, f64) {
 fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
     md: &MinkowskiDifference<A, B>,
     set: &VertexSet<N>,
-    hit: &Penetration,
+    hit: &Solution,
     centers: Option<&SupportPoint>,
     tolerance: f64,
 ) -> Result<Vec3, Fault> {
@@ -196,7 +196,7 @@ fn build_fan<A: SupportMap, B: SupportMap>(
     limit: Option<&mut Limit>,
     fan: &mut Fan,
 ) -> Result<Feature, Fault> {
-    let mut corners = Corners::default();
+    let mut corners = ContactPolygon::default();
     if !query.find_polygon(object, limit, &mut corners)? {
         return Ok(Feature::Plane);
     }
@@ -479,13 +479,13 @@ mod tests {
         }
         let found = md.support(&Vec3::z()).unwrap();
         let point1 = Vec3::new(found.v2.x, found.v2.y, 0.0);
-        let hit = Penetration {
+        let hit = Solution {
             depth,
             dir: Vec3::z(),
             normal: Vec3::z(),
             point1,
             point2: found.v2,
-            ..Penetration::default()
+            ..Solution::default()
         };
         let v2 = Vec3::z() * (-depth - lowest);
         let centers = SupportPoint {
@@ -559,12 +559,12 @@ mod tests {
             let mut set = VertexSet::<16>::EMPTY;
             set.push(&Vec3::z(), &md.support(&Vec3::z()).unwrap());
             let point = Vec3::new(0.05, 0.025, 0.5);
-            let hit = Penetration {
+            let hit = Solution {
                 depth,
                 normal: Vec3::z(),
                 point1: point,
                 point2: point - Vec3::z() * depth,
-                ..Penetration::default()
+                ..Solution::default()
             };
             let centers = SupportPoint {
                 v: -offset,
@@ -605,12 +605,12 @@ mod tests {
             let dir = Vec3::new(x, y, 1.0).normalize();
             set.push(&dir, &md.support(&dir).unwrap());
         }
-        let hit = Penetration {
+        let hit = Solution {
             depth,
             normal: Vec3::z(),
             point1: Vec3::new(0.0, 0.003, 0.0),
             point2: Vec3::new(0.0, 0.003, -depth),
-            ..Penetration::default()
+            ..Solution::default()
         };
         let centers = SupportPoint {
             v: -Vec3::z() - center,
@@ -631,12 +631,12 @@ mod tests {
         let md = difference(broken, ball(Vec3::z() * 1.9, 1.0));
         let mut set = VertexSet::<4>::EMPTY;
         set.push(&Vec3::z(), &md.support(&Vec3::z()).unwrap());
-        let hit = Penetration {
+        let hit = Solution {
             depth: 0.1,
             normal: Vec3::z(),
             point1: Vec3::z(),
             point2: Vec3::z() * 0.9,
-            ..Penetration::default()
+            ..Solution::default()
         };
         let pos = contact_position(&md, &set, &hit, None, 1e-9);
         assert_eq!(pos, Err(Fault::NonFinite));

@@ -50,7 +50,7 @@ impl FaceSample {
 
 /// The face of one object.
 #[derive(Clone, Copy, Default)]
-pub struct Face {
+pub struct ContactFace {
     pub corners: Polygon<MAX_FACE_CORNERS>,
     /// Height of the support plane along the outward normal, metres.
     pub support_height: f64,
@@ -82,7 +82,7 @@ pub struct Motion {
     pub to: Vec2,
 }
 
-impl Face {
+impl ContactFace {
     /// Returns the distance from the face within which a contact may lie, metres: half the slop; for a segment that
     /// is long compared with its rounding, at least the rounded half-width. (For a short segment, e.g. a part of a
     /// curved rim, the rounding is along it and not perpendicular to it.)

@@ -27,7 +27,7 @@
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
 //! the whole query; here only the support function is evaluated along tilted normals.
 
-use crate::contact::face::{Face, FaceSample, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS};
+use crate::contact::face::{ContactFace, FaceSample, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS};
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache};
 use crate::contact::tuning::{
@@ -52,7 +52,7 @@ pub fn faces<A: SupportMap, B: SupportMap>(
     frame: &ContactFrame,
     slop: f64,
     cache: Option<&ManifoldCache>,
-) -> Result<([Face; 2], f64), Fault> {
+) -> Result<([ContactFace; 2], f64), Fault> {
     let mut one = FaceSearch::new(obj1, frame, 1.0);
     let mut two = FaceSearch::new(obj2, frame, -1.0);
     one.query_cached_or_plane(cache.map(|cache| &cache.faces[0]))?;
@@ -75,7 +75,7 @@ struct FaceSearch<'a, S> {
     /// The vertex on the support plane.
     first: FaceSample,
     /// The face, as far as it is known.
-    face: Face,
+    face: ContactFace,
 }
 
 impl<'a, S: SupportMap> FaceSearch<'a, S> {
@@ -87,7 +87,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             sign,
             query_count: 0,
             first: FaceSample::default(),
-            face: Face::default(),
+            face: ContactFace::default(),
         }
     }
 

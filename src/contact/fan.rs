@@ -4,7 +4,7 @@
 //! The vertices of a feature, in order around the deepest point.
 
 use crate::contact::feature::four_directions;
-use crate::contact::overlap::{Corners, MAX_POLYGON_CORNERS, in_overlap, volume_of};
+use crate::contact::overlap::{ContactPolygon, MAX_POLYGON_CORNERS, in_overlap, volume_of};
 use crate::contact::tuning::{COMMON_DROP_FACTOR, DROP_TOL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
@@ -41,7 +41,7 @@ impl Fan {
     /// Becomes the fan of a polygon: each corner moved outwards by `distance` and raised by the drop that all have in common.
     /// An edge has its ends also to both sides, a point has four vertices.
     #[inline(always)]
-    pub fn set(&mut self, corners: &Corners, distance: f64) {
+    pub fn set(&mut self, corners: &ContactPolygon, distance: f64) {
         self.len = 0;
         let least = corners.iter().fold(1.0, |least, c| lesser(c.z, least));
         let common = COMMON_DROP_FACTOR * least;

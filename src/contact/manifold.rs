@@ -14,30 +14,18 @@
 //! 4. *Reduction.* Keep the deepest point and those that span the largest area with it. Points with old ids are kept
 //!    instead if they span at least nine tenths of that area.
 
-use crate::contact::face::{Face, MAX_CONTACTS};
+use crate::contact::face::{ContactFace, MAX_CONTACTS};
 use crate::contact::face_search::faces;
 use crate::contact::frame::ContactFrame;
 use crate::contact::manifold_cache::ManifoldCache;
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
-use crate::math::{Vec3, larger, lesser};
+use crate::math::{Real, Vec3, larger, lesser, to_real};
 use crate::minkowski::support::{Fault, SupportMap};
+use crate::types::Contact;
 
 /// The sine between two segments up to which they count as parallel: 14°.
 const PARALLEL_SINE: f64 = 0.25;
-
-/// One point of a contact manifold.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contact {
-    /// Point on the face of obj1, metres.
-    pub point1: Vec3,
-    /// Point on the face of obj2, metres: `point1 - depth * normal` if the faces overlap in projection.
-    pub point2: Vec3,
-    /// Depth at the contact, metres; negative if the objects are apart there.
-    pub depth: f64,
-    /// Contact id: the same while the contact moves with either object, never 0; 0 without a cache.
-    pub id: u32,
-}
 
 /// A contact manifold: a list of contacts, the deepest first.
 pub type Manifold = FixedVec<Contact, MAX_CONTACTS>;
@@ -82,9 +70,9 @@ pub fn contacts<A: SupportMap, B: SupportMap>(
         }
         stored_ids.push((at, id));
         manifold.push(Contact {
-            point1: frame.point(at1.xy()) + frame.normal * height1,
-            point2: frame.point(at2.xy()) - frame.normal * height2,
-            depth: height1 + height2,
+            point1: to_real(&(frame.point(at1.xy()) + frame.normal * height1)),
+            point2: to_real(&(frame.point(at2.xy()) - frame.normal * height2)),
+            depth: (height1 + height2) as Real,
             id: if out_cache.is_some() { id } else { 0 },
         });
     }
@@ -131,7 +119,10 @@ fn reduced(
 
 /// Returns the overlap of two faces in projection. If they do not overlap: the midpoint of their closest points, and,
 /// if these are farther apart than the slop, the two points.
-fn overlap_of_faces(one: &Face, two: &Face) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
+fn overlap_of_faces(
+    one: &ContactFace,
+    two: &ContactFace,
+) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
     let coord_eps = larger(one.coord_eps, two.coord_eps);
     let is_swapped = one.corners.area() > two.corners.area();
     let [small, large] = if is_swapped { [two, one] } else { [one, two] };
@@ -200,7 +191,7 @@ fn overlap_of_segments(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
+    use crate::math::{EPSILON, from_real};
     use crate::test_shapes::{Random, ball, capsule, corners, hull, placed};
 
     const SLOP: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-4 };
@@ -222,15 +213,15 @@ mod tests {
         let whole = stacked(angle, MAX_CONTACTS);
         assert_eq!(whole.len(), 8);
         for c in whole.iter() {
-            assert!((c.depth - 0.01).abs() < 64.0 * EPSILON);
-            assert!(c.point1.z.abs() < 64.0 * EPSILON);
-            let error = c.point1 - c.point2 - Vec3::z() * c.depth;
+            assert!((f64::from(c.depth) - 0.01).abs() < 64.0 * EPSILON);
+            assert!(from_real(c.point1).z.abs() < 64.0 * EPSILON);
+            let error = from_real(c.point1) - from_real(c.point2) - Vec3::z() * f64::from(c.depth);
             assert!(error.norm() < 64.0 * EPSILON);
         }
         // In order around the normal.
         let area = |m: &Manifold| {
-            let first = m[0].point1;
-            let spokes = m.iter().map(|c| c.point1 - first);
+            let first = from_real(m[0].point1);
+            let spokes = m.iter().map(|c| from_real(c.point1) - first);
             let pairs = spokes.clone().zip(spokes.skip(1));
             pairs.map(|(a, b)| 0.5 * a.cross(&b).z).sum::<f64>()
         };
@@ -241,7 +232,7 @@ mod tests {
         assert_eq!(four.len(), 4);
         assert!((area(&four) - octagon * (0.5 as f64).sqrt()).abs() < 8.0 * SLOP);
         let two = stacked(angle, 2);
-        let long = (two[0].point1 - two[1].point1).norm();
+        let long = (from_real(two[0].point1) - from_real(two[1].point1)).norm();
         let angle = 2.0 * angle.cos();
         assert!(
             (long - 2.0 * (1.0 / (0.5 * angle))).abs() < 8.0 * SLOP,
@@ -265,8 +256,12 @@ mod tests {
             let slop = 0.6;
             let cube = placed(&corners(Vec3::repeat(0.5)), &turn.into(), Vec3::z());
             let found = contacts(&hull(&plate), &hull(&cube), &Vec3::z(), slop, None, 4).unwrap();
-            let deepest = found[0].depth;
-            assert!(found.iter().all(|c| c.depth <= deepest + 64.0 * EPSILON));
+            let deepest = f64::from(found[0].depth);
+            assert!(
+                found
+                    .iter()
+                    .all(|c| f64::from(c.depth) <= deepest + 64.0 * EPSILON)
+            );
         }
     }
 
@@ -278,14 +273,14 @@ mod tests {
             let at = Vec3::new(r.within(-0.3, 0.3), r.within(-0.3, 0.3), 0.89);
             let found = contacts(&hull(&plate), &ball(at, 0.4), &Vec3::z(), SLOP, None, 8).unwrap();
             assert_eq!(found.len(), 1);
-            let across = found[0].point1 - at;
+            let across = from_real(found[0].point1) - at;
             assert!(across.xy().norm() < SLOP, "{across}");
             let half = Vec3::new(0.3, r.within(-0.3, 0.3), 0.0);
             let rod = capsule(at - half, at + half, 0.4);
             let found = contacts(&hull(&plate), &rod, &Vec3::z(), SLOP, None, 8).unwrap();
             assert_eq!(found.len(), 2);
             for c in found.iter() {
-                let across = (c.point1 - at).xy();
+                let across = (from_real(c.point1) - at).xy();
                 let end = (across - half.xy()).norm().min((across + half.xy()).norm());
                 assert!(end < 2.0 * SLOP, "{end:e}");
             }
@@ -305,11 +300,15 @@ mod tests {
             let found = contacts(&one, &two, &Vec3::x(), 0.0, None, 4).unwrap();
             for c in found.iter() {
                 let near = EPSILON.sqrt();
-                assert!(c.point1.z.abs() < a.z + near, "{round}: {}", c.point1);
                 assert!(
-                    (c.point2 - at).z.abs() < b.z + near,
+                    from_real(c.point1).z.abs() < a.z + near,
                     "{round}: {}",
-                    c.point2
+                    from_real(c.point1)
+                );
+                assert!(
+                    (from_real(c.point2) - at).z.abs() < b.z + near,
+                    "{round}: {}",
+                    from_real(c.point2)
                 );
             }
         }

@@ -14,7 +14,7 @@
 //! Valid for the swapped pair too: faces are stored by the orientation of the frame, not by object.
 
 use crate::contact::face::{
-    Face, FaceSample, MAX_CONTACTS, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS,
+    ContactFace, FaceSample, MAX_CONTACTS, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS,
 };
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::tuning::CACHED_LEAN;
@@ -88,7 +88,7 @@ fn confirming_samples(
 
 impl CachedFace {
     /// Packs the samples that reproduce a face; positions are relative to `origin`.
-    fn new(face: &Face, origin: &Vec3) -> Self {
+    fn new(face: &ContactFace, origin: &Vec3) -> Self {
         let samples = if face.is_complete {
             confirming_samples(&face.corners, face.tilt_tan)
         } else {
@@ -203,7 +203,7 @@ impl ManifoldCache {
         &mut self,
         frame: &ContactFrame,
         slop: f64,
-        faces: [&Face; 2],
+        faces: [&ContactFace; 2],
         points: &[(Vec3, u32)],
     ) {
         let origin = faces[0].samples.cyclic(0).found;

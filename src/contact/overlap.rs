@@ -4,14 +4,13 @@
 //! The polygon of an object in a contact, and its overlap with a plane: the volume between them, in depths, with the deepest
 //! point as the apex of all triangles.
 
-use crate::geometry::fixed_vec::FixedVec;
-use crate::geometry::polygon::Vec2;
+use crate::geometry::polygon::{Polygon, Vec2};
 use crate::math::{Vec3, larger};
 
-/// Largest number of corners of a polygon.
+/// Largest number of corners of a contact polygon.
 pub const MAX_POLYGON_CORNERS: usize = 12;
-/// The corners of a polygon, counterclockwise.
-pub type Corners = FixedVec<Vec3, MAX_POLYGON_CORNERS>;
+/// The polygon of an object in a contact.
+pub type ContactPolygon = Polygon<MAX_POLYGON_CORNERS>;
 
 /// The overlap of a polygon with a plane.
 #[derive(Clone, Copy)]

@@ -26,7 +26,7 @@ use crate::contact::feature::{ContactQuery, four_directions};
 use crate::contact::frame::outwards;
 use crate::contact::limit::Limit;
 use crate::contact::overlap::{
-    Corners, MAX_POLYGON_CORNERS, Overlap, in_overlap, volume_beyond, volume_of,
+    ContactPolygon, MAX_POLYGON_CORNERS, Overlap, in_overlap, volume_beyond, volume_of,
 };
 use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, LEAST_GROWTH, TILT_FACTOR};
 use crate::geometry::fixed_vec::FixedVec;
@@ -75,7 +75,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
         &self,
         object: usize,
         mut limit: Option<&mut Limit>,
-        corners: &mut Corners,
+        corners: &mut ContactPolygon,
     ) -> Result<bool, Fault> {
         let mut found = Found {
             corners: FixedVec::default(),
@@ -267,7 +267,7 @@ impl Found {
 
     /// Writes the corners, counterclockwise.
     #[inline(always)]
-    fn write_to(&self, corners: &mut Corners) {
+    fn write_to(&self, corners: &mut ContactPolygon) {
         let mut i = 0;
         for _ in 0..self.corners.len() {
             let c = self.corners.at(i);

@@ -51,7 +51,7 @@ use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
-use crate::types::{Penetration, Status};
+use crate::types::{Solution, Status};
 
 /// The gap above the tolerance that counts as converged if rounding ended the search, in support epsilons. Derived: 20
 /// for the rounding of a plane and of a point above it if the size of D is twice the world extent; the rest is a
@@ -126,7 +126,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     mut arena: Option<&mut dyn Arena>,
     set: &mut VertexSet<SMALL_VERTICES>,
     state: &mut WarmStart,
-) -> Result<Penetration, Stop> {
+) -> Result<Solution, Stop> {
     set.push(&query.upper.dir, first);
     let is_warm = state.is_overlap();
     // The axis of a separated pair has been evaluated already; nothing else of its state is used.
@@ -167,7 +167,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     // A direction that was evaluated before the upper bound of a later polytope is tilted by the next query.
     let is_general = solver.query.upper.is_general() && dir == solver.query.upper.dir;
     *state = WarmStart::hit(dir, is_general, depth, solver.fit.confirmed_radius());
-    Ok(Penetration {
+    Ok(Solution {
         depth,
         depth_lower: lower.min(depth),
         dir,
@@ -177,7 +177,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         iterations: solver.iterations,
         status,
         is_general,
-        ..Penetration::default()
+        ..Solution::default()
     })
 }
 
@@ -612,7 +612,7 @@ mod tests {
         center: Option<&SupportPoint>,
         max_points: u64,
         arena: Option<&mut dyn Arena>,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         let settings = Settings {
             max_iterations: 1000,
             ..Settings::new(TOLERANCE)

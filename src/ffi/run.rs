@@ -17,7 +17,7 @@ use crate::math::Real;
 use crate::minkowski::support::Fault;
 use crate::minkowski::support_query::Stop;
 use crate::query::Solver;
-use crate::types::{Penetration, Status};
+use crate::types::{Solution, Status};
 
 /// Runs a query with the caller's state, or a cold one where `warm` is NULL, and with memory that is allocated if the query
 /// needs it. Stores the new state unless there is a fault. `want`: CCD_WANT_ flags.
@@ -34,7 +34,7 @@ pub unsafe fn run_query(
     solver: Solver,
     warm: *mut ccd_warm_t,
     want: c_uint,
-) -> Result<Penetration, Stop> {
+) -> Result<Solution, Stop> {
     // SAFETY: the caller's guarantees are those of the callees; the buffers are dropped once, after their last use.
     unsafe {
         let pair = args.pair(interface, &solver, want)?;
@@ -99,7 +99,7 @@ pub unsafe fn intersect(args: QueryArgs, interface: Interface, warm: *mut ccd_wa
 /// # Safety
 /// As [`run_query`].
 #[inline(always)]
-pub unsafe fn fill<T: From<Penetration>>(
+pub unsafe fn fill<T: From<Solution>>(
     args: QueryArgs,
     solver: Solver,
     warm: *mut ccd_warm_t,

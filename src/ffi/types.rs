@@ -24,6 +24,13 @@ impl From<Vec3> for ccd_vec3_t {
     }
 }
 
+impl From<[Real; 3]> for ccd_vec3_t {
+    #[inline(always)]
+    fn from(v: [Real; 3]) -> Self {
+        Self { v }
+    }
+}
+
 impl From<ccd_vec3_t> for Vec3 {
     #[inline(always)]
     fn from(v: ccd_vec3_t) -> Self {

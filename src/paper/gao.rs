@@ -39,7 +39,7 @@ use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::tolerance::Scale;
 use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::portal::choose_corner;
-use crate::types::{Penetration, Settings, Status};
+use crate::types::{Settings, Solution, Status};
 
 /// The perturbation of a stationary direction, as tangents along two perpendicular vectors: 6 degrees in all, small
 /// enough to stay in the valley and large enough to find a slope. The two have no simple ratio, so that no symmetry of
@@ -60,7 +60,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     until: Until,
     settings: &Settings,
     on_new_ray: impl FnMut(f64),
-) -> Result<Penetration, Stop> {
+) -> Result<Solution, Stop> {
     let start = match plane_normal {
         Some(m) => unit(&(start - m * m.dot(&start))).unwrap_or_else(|| perpendicular(&m)),
         None => start,
@@ -83,7 +83,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         best: ray,
     };
     let ended = run_algorithm_3(&mut search, ray, on_new_ray)?;
-    Ok(Penetration {
+    Ok(Solution {
         iterations: settings.max_iterations - search.budget,
         status: Status::of_early_end(search.budget, settings.max_iterations, MAX_PROVEN_POINTS)
             .unless(ended.is_some()),
@@ -96,7 +96,7 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
     search: &mut RaySearch<'_, A, B>,
     mut ray: SupportPlane,
     mut on_new_ray: impl FnMut(f64),
-) -> Result<Option<Penetration>, Stop> {
+) -> Result<Option<Solution>, Stop> {
     // The stationary ray that was perturbed: its depth and witness points are exact.
     let mut perturbed_from: Option<SupportPlane> = None;
     loop {
@@ -154,19 +154,19 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
 
 /// Makes the result of a support plane. The witness points are those of the point at which the ray crosses
 /// `portal`; without a portal, those of the support point.
-fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Penetration {
+fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Solution {
     let (point1, point2) = match portal {
         Some(p) => p.witnesses(),
         None => (plane.point.v1, plane.point.v2),
     };
-    Penetration {
+    Solution {
         depth: plane.depth,
         dir: plane.dir,
         normal: plane.dir,
         point1,
         point2,
         is_general: plane.is_general(),
-        ..Penetration::default()
+        ..Solution::default()
     }
 }
 

@@ -26,7 +26,7 @@ use crate::minkowski::support::{Fault, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;
-use crate::types::{Penetration, Settings, Status};
+use crate::types::{Settings, Solution, Status};
 
 /// Margins and largest distance of [`signed_distance`](crate::signed_distance).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +61,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         options: DistanceOptions,
         state: &mut WarmStart,
         arena: &mut dyn Arena,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         let (margin1, margin2) = (f64::from(options.margin1), f64::from(options.margin2));
         let is_finite = margin1 + margin2 < Real::MAX.into();
         if !(margin1 >= 0.0 && margin2 >= 0.0 && is_finite && options.max_distance >= 0.0) {
@@ -103,7 +103,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         &self,
         state: &mut WarmStart,
         arena: &mut dyn Arena,
-    ) -> Result<Option<Penetration>, Fault> {
+    ) -> Result<Option<Solution>, Fault> {
         let found = self.proven(state, arena);
         state.note_separation(&found);
         if_overlapping(found)
@@ -141,10 +141,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 }
 
 /// Adds the margins to the result of the cores.
-fn with_margins(cores: Penetration, [margin1, margin2]: [f64; 2]) -> Penetration {
+fn with_margins(cores: Solution, [margin1, margin2]: [f64; 2]) -> Solution {
     let (n, margin) = (cores.normal, margin1 + margin2);
     let depth = cores.depth + margin;
-    Penetration {
+    Solution {
         depth,
         depth_lower: lesser(cores.depth_lower + margin, depth),
         point1: cores.point1 + n * margin1,
@@ -160,7 +160,7 @@ fn separated_distance(
     contact_eps: f64,
     tolerance: f64,
     [margin1, margin2]: [f64; 2],
-) -> Penetration {
+) -> Solution {
     let margin = margin1 + margin2;
     // The witness points are on the line through the closest points of the cores; if the cores touch, that
     // line is rounding error, and the normal replaces it.
@@ -179,7 +179,7 @@ fn separated_distance(
         // The gap is that of the clamped bounds.
         status = status.unless(-depth_lower <= larger(contact_eps, tolerance));
     }
-    Penetration {
+    Solution {
         depth,
         depth_lower: lesser(depth_lower, depth),
         dir: cores.normal,
@@ -189,6 +189,6 @@ fn separated_distance(
         iterations: cores.iterations,
         status,
         is_general: cores.is_general,
-        ..Penetration::default()
+        ..Solution::default()
     }
 }

@@ -137,7 +137,7 @@ pub unsafe extern "C-unwind" fn ccdContacts(
             let out = contacts.add(i);
             (&raw mut (*out).point1).write(contact.point1.into());
             (&raw mut (*out).point2).write(contact.point2.into());
-            (&raw mut (*out).depth).write(contact.depth as Real);
+            (&raw mut (*out).depth).write(contact.depth);
             (&raw mut (*out).id).write(contact.id);
         }
     }

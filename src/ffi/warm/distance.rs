@@ -12,7 +12,7 @@ use super::state::ccd_warm_t;
 use crate::math::Real;
 use crate::query::Solver;
 use crate::query::signed_distance::DistanceOptions;
-use crate::types::Penetration;
+use crate::types::{Distance, Solution};
 
 /// Result of ccdSignedDistance. A field that was not requested is zero.
 #[repr(C)]
@@ -39,12 +39,12 @@ pub struct ccd_distance_t {
     pub status: c_int,
 }
 
-impl From<Penetration> for ccd_distance_t {
-    fn from(found: Penetration) -> Self {
-        let (distance, distance_upper) = found.distance_bounds();
+impl From<Solution> for ccd_distance_t {
+    fn from(found: Solution) -> Self {
+        let found = Distance::from(found);
         Self {
-            distance,
-            distance_upper,
+            distance: found.distance,
+            distance_upper: found.distance_upper,
             normal: found.normal.into(),
             point1: found.point1.into(),
             point2: found.point2.into(),

@@ -9,9 +9,9 @@ use super::super::callbacks::QueryArgs;
 use super::super::run::fill;
 use super::super::types::{ccd_t, ccd_vec3_t};
 use super::state::ccd_warm_t;
-use crate::math::{Real, lower_to_real};
+use crate::math::Real;
 use crate::query::Solver;
-use crate::types::Penetration;
+use crate::types::{Penetration, Solution};
 
 /// Requests pos. Costs 2 to 6 support points on average, k + 1 for a face of k > 4 corners, of both
 /// objects where neither's face contains the other's; at most 24. May call one support function
@@ -62,11 +62,12 @@ pub struct ccd_penetration_t {
     pub status: c_int,
 }
 
-impl From<Penetration> for ccd_penetration_t {
-    fn from(hit: Penetration) -> Self {
+impl From<Solution> for ccd_penetration_t {
+    fn from(found: Solution) -> Self {
+        let hit = Penetration::from(found);
         Self {
-            depth: hit.depth as Real,
-            depth_lower: lower_to_real(hit.depth_lower),
+            depth: hit.depth,
+            depth_lower: hit.depth_lower,
             dir: hit.dir.into(),
             normal: hit.normal.into(),
             pos: hit.pos.into(),

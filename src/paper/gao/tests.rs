@@ -17,7 +17,7 @@ mod search {
         start: Vec3,
         shortcut: Until,
         switched: impl FnMut(f64),
-    ) -> Penetration {
+    ) -> Solution {
         let hit = penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap();
         assert_eq!(hit.status, Status::Converged);
         hit
@@ -142,7 +142,7 @@ mod search {
     /// Returns whether no direction within 3 degrees is lower by more than the tolerance.
     fn is_local_minimum<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
-        hit: &Penetration,
+        hit: &Solution,
         r: &mut Random,
     ) -> bool {
         (0..50).all(|_| {
@@ -458,7 +458,7 @@ mod planar {
         m: &Vec3,
         start: Vec3,
         settings: &Settings,
-    ) -> Result<Penetration, Stop> {
+    ) -> Result<Solution, Stop> {
         super::super::penetration(md, start, Some(*m), Until::Shortcut, settings, |_| ())
     }
 
@@ -466,7 +466,7 @@ mod planar {
         md: &MinkowskiDifference<A, B>,
         m: &Vec3,
         start: Vec3,
-    ) -> Penetration {
+    ) -> Solution {
         let hit = penetration(md, m, start, &SETTINGS).unwrap();
         let ulps = 100.0 * EPSILON;
         assert_eq!(hit.status, Status::Converged);
