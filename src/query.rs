@@ -318,7 +318,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
         let is_general = remembered.is_some() && state.is_general;
         let mut hit = local::penetration(&mut query, &mut set, &start, is_general, &self.settings)?;
-        *state = WarmStart::hit(hit.dir, hit.is_general, hit.depth, [0.0; 2]);
+        *state = WarmStart::hit(&hit);
         if hit.status == Status::Converged && self.settings.pos {
             hit.pos = self.contact_position(&set, &hit)?;
         }
@@ -450,6 +450,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     ) -> Result<Solution, Stop> {
         let mut set = VertexSet::EMPTY;
         let mut hit = epa::penetration::penetration(query, first, request, arena, &mut set, state)?;
+        *state = WarmStart::hit(&hit);
         if hit.status == Status::Converged {
             if self.settings.pos {
                 hit.pos = self.contact_position(&set, &hit)?;

@@ -113,6 +113,9 @@ pub struct Solution {
     pub status: Status,
     /// True if `normal` is in general position ([`crate::minkowski::general_position`]).
     pub is_general: bool,
+    /// The radii of the sphere fits of obj1 and obj2, metres, for the state of the next query; 0 unless a prediction was
+    /// confirmed.
+    pub radius: [f64; 2],
 }
 
 impl Solution {

@@ -82,7 +82,7 @@ pub struct EpaRequest<'a> {
     pub wants_points: bool,
 }
 
-/// The bounds and the witness points of the polytope or portal with the least gap so far.
+/// The bounds and the witness points of a polytope or portal.
 #[derive(Clone, Copy)]
 struct Proof {
     /// The upper bound, metres.
@@ -93,6 +93,16 @@ struct Proof {
     lower: f64,
     /// The witness points of the upper bound.
     points: [Vec3; 2],
+    /// True if a support function contradicts the plane of the upper bound.
+    is_inconsistent: bool,
+}
+
+/// What is known before a polytope is made.
+enum Outcome {
+    /// The minimum is proven.
+    Proven(Proof),
+    /// The portal from which the polytope starts; `None` if none was found.
+    Open(Option<[Vertex; 3]>),
 }
 
 /// The state of a query.
@@ -104,17 +114,13 @@ struct EpaSolver<'q, 'm, A, B> {
     fit: SphereFit,
     /// The number of support points that expanded polytopes.
     iterations: u64,
-    /// True if a support function contradicts the plane of the result.
-    is_inconsistent: bool,
-    /// `None` before the first result.
-    proof: Option<Proof>,
 }
 
 /// Finds the global minimum of the penetration depth, by the steps at the head of this file, without a contact position.
 /// `first`: the support point along the warm state's direction or the ray, which does not separate
 /// ([`SupportQuery::evaluate_first`]: most queries of separated objects end there, before this function's stack is in
-/// use). Without an `arena` there are only the buffers on the stack. `state`: of the last query; becomes that of the hit.
-/// `set` then has the vertices of the first support calls, for the contact position.
+/// use). Without an `arena` there are only the buffers on the stack. `state`: of the last query. `set`: without
+/// entries; then it has the vertices of the first support calls, for the contact position.
 ///
 /// # Errors
 /// [`Stop::Separated`]: the objects are separated, or in contact within rounding. [`Stop::Fault`].
@@ -125,7 +131,7 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     request: &EpaRequest<'_>,
     mut arena: Option<&mut dyn Arena>,
     set: &mut VertexSet<SMALL_VERTICES>,
-    state: &mut WarmStart,
+    state: &WarmStart,
 ) -> Result<Solution, Stop> {
     set.push(&query.upper.dir, first);
     let is_warm = state.is_overlap();
@@ -141,32 +147,29 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         interior: request.center.copied().unwrap_or_default(),
         fit: SphereFit::warm(radius),
         iterations: 0,
-        is_inconsistent: false,
-        proof: None,
     };
-    let portal = solver.run_without_polytope(set)?;
-    let (proof, mut status) = match solver.proof {
-        Some(proof) => (proof, Status::Converged),
-        None => solver.expand_from(set, portal.as_ref(), &mut arena)?,
+    let (proof, mut status) = match solver.run_without_polytope(set)? {
+        Outcome::Proven(proof) => (proof, Status::Converged),
+        Outcome::Open(portal) => solver.expand_from(set, portal.as_ref(), &mut arena)?,
     };
     let Proof {
         upper: depth,
         dir,
         mut lower,
         points,
+        mut is_inconsistent,
     } = proof;
     // A support plane excludes the center from D: the polytope may contain an origin that is outside.
     if request.center.is_some() && solver.query.center.is_none() {
         solver.prove_overlap(&dir)?;
-        solver.is_inconsistent = true;
+        is_inconsistent = true;
     }
-    if solver.is_inconsistent {
+    if is_inconsistent {
         (lower, status) = (0.0, Status::InconsistentSupport);
     }
     solver.query.confirm_upper()?;
     // A direction that was evaluated before the upper bound of a later polytope is tilted by the next query.
     let is_general = solver.query.upper.is_general() && dir == solver.query.upper.dir;
-    *state = WarmStart::hit(dir, is_general, depth, solver.fit.confirmed_radius());
     Ok(Solution {
         depth,
         depth_lower: lower.min(depth),
@@ -177,18 +180,18 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         iterations: solver.iterations,
         status,
         is_general,
+        radius: solver.fit.confirmed_radius(),
         ..Solution::default()
     })
 }
 
 impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
-    /// Runs steps 2 to 4, and stores the proof if there is one. Returns the portal; `None` with a proof, or if none was
-    /// found. Not inlined, so that its frame is released before a polytope is made.
+    /// Runs steps 2 to 4. Not inlined, so that its frame is released before a polytope is made.
     #[inline(never)]
     fn run_without_polytope(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-    ) -> Result<Option<[Vertex; 3]>, Stop> {
+    ) -> Result<Outcome, Stop> {
         let mut ray = self.request.ray;
         let opposite = match self.request.center {
             Some(_) => None,
@@ -200,11 +203,11 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             set.push(dir, point);
         }
         if let Some(portal) = &portal {
-            if self.certify(set, portal)? {
-                return Ok(None);
+            if let Some(proof) = self.certify(set, portal)? {
+                return Ok(Outcome::Proven(proof));
             }
         }
-        Ok(portal)
+        Ok(Outcome::Open(portal))
     }
 
     /// Sets the interior point to the middle of the support points along the ray and opposite to it, and `ray` to the
@@ -306,14 +309,13 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         })
     }
 
-    /// Tries to prove the minimum from the tetrahedron of interior point and portal, and stores the proof. Returns
-    /// whether it is proven.
+    /// Tries to prove the minimum from the tetrahedron of interior point and portal. Returns the proof.
     #[inline(always)]
     fn certify(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
         portal: &[Vertex; 3],
-    ) -> Result<bool, Stop> {
+    ) -> Result<Option<Proof>, Stop> {
         let [a, b, c] = portal.each_ref().map(|v| v.w);
         let scale = &self.query.scale;
         let size = scale.size();
@@ -323,15 +325,14 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         // A lower bound of at most the contact epsilon proves no overlap.
         let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
         let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
-            return Ok(false);
+            return Ok(None);
         };
         let lower = distance - error;
         let mut face = *portal;
         if self.query.upper.depth - lower > tolerance {
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
         }
-        self.store_proof(set, &face, || *portal, lower, allowed);
-        Ok(true)
+        Ok(Some(self.proof(set, &face, || *portal, lower, allowed)))
     }
 
     /// Expands polytopes from up to three starts, until one contains the origin and is not ended by rounding: the
@@ -344,6 +345,8 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         portal: Option<&[Vertex; 3]>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<(Proof, Status), Stop> {
+        // The proof with the least gap.
+        let mut best: Option<Proof> = None;
         for attempt in 0..3 {
             if attempt > 0 {
                 set.truncate(SMALL_VERTICES - START_VERTICES);
@@ -356,19 +359,24 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
                 _ => self.find_gjk_tetrahedron(set, &dir)?,
             };
             let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
-            let status = match self.expand_small(set, &mut polytope, &start)? {
+            let (found, status) = match self.expand_small(set, &mut polytope, &start)? {
                 _ if polytope.is_blank() => continue,
                 Some(status) => self.compute_result(set, &polytope, status)?,
                 None => self.expand_large(set, &polytope, arena)?,
             };
-            if let (Some(proof), true) = (self.proof, status != Status::Rounding) {
+            let proof = match best {
+                Some(best) if !(found.upper - found.lower < best.upper - best.lower) => best,
+                _ => found,
+            };
+            if status != Status::Rounding {
                 if !(proof.lower > self.query.scale.contact_eps()) {
                     self.prove_overlap(&dir)?;
                 }
                 return Ok((proof, status));
             }
+            best = Some(proof);
         }
-        let proof = match self.proof {
+        let proof = match best {
             Some(proof) => proof,
             None => {
                 // No tetrahedron has a volume: the depth is mostly of the order of rounding. The points that GJK finds
@@ -385,6 +393,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
                     dir,
                     lower: 0.0,
                     points,
+                    is_inconsistent: false,
                 }
             }
         };
@@ -417,7 +426,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         small_set: &VertexSet<SMALL_VERTICES>,
         small_polytope: &EpaPolytope<SMALL_FACES>,
         arena: &mut Option<&mut dyn Arena>,
-    ) -> Result<Status, Stop> {
+    ) -> Result<(Proof, Status), Stop> {
         let mut set = VertexSet::<LARGE_VERTICES>::EMPTY;
         let mut polytope = EpaPolytope::<LARGE_FACES>::BLANK;
         set.copy_from(small_set);
@@ -437,7 +446,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     /// Continues an expansion in the buffers of an arena. Returns as [`EpaSolver::compute_result`].
     #[cold]
     #[inline(never)]
-    fn expand_in_arena(&mut self, buffers: &mut EpaBuffers) -> Result<Status, Stop> {
+    fn expand_in_arena(&mut self, buffers: &mut EpaBuffers) -> Result<(Proof, Status), Stop> {
         let EpaBuffers { set, polytope } = buffers;
         let status = self.expand_in(set, polytope, false)?;
         self.compute_result(set, polytope, status.unwrap_or(Status::SupportLimit))
@@ -490,15 +499,15 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         }))
     }
 
-    /// Stores the result of an expansion that ended with `end`. Returns its status; [`Status::Rounding`] if the polytope
-    /// does not provably contain the origin.
+    /// Returns the proof of an expansion that ended with `end`, and its status: [`Status::Rounding`] if the polytope does
+    /// not provably contain the origin.
     #[inline(never)]
     fn compute_result<const N: usize, const F: usize>(
         &mut self,
         set: &mut VertexSet<N>,
         polytope: &EpaPolytope<F>,
         end: Status,
-    ) -> Result<Status, Stop> {
+    ) -> Result<(Proof, Status), Stop> {
         let closest = polytope.closest_face();
         let support_eps = self.query.scale.support_eps();
         let gap_limit = &self.request.limits.gap;
@@ -521,39 +530,36 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         }
         let upper = self.query.upper.depth;
         let gap = self.allowed_gap();
-        let is_closer = |proof: Proof| upper - lower < proof.upper - proof.lower;
-        if self.proof.is_none_or(is_closer) {
-            let face = match refined {
-                Some(face) => face,
-                None if self.request.wants_points => exit_face(&self.query.upper, set, gap),
-                None => [Vertex::default(); 3],
-            };
-            let exit_plane = self.query.upper;
-            self.store_proof(set, &face, || exit_face(&exit_plane, set, gap), lower, gap);
-        }
+        let face = match refined {
+            Some(face) => face,
+            None if self.request.wants_points => exit_face(&self.query.upper, set, gap),
+            None => [Vertex::default(); 3],
+        };
+        let other = || exit_face(&self.query.upper, set, gap);
+        let proof = self.proof(set, &face, other, lower, gap);
         // Converged is decided by the lower bound as rounded down, whatever ended the expansion.
         let rounding = ROUNDING_GAP_EPS * support_eps;
         let allowed = larger(gap, larger(gap_limit.tolerance, tolerance) + rounding);
-        Ok(match end {
+        let status = match end {
             _ if !is_inside => Status::Rounding,
             _ if upper - lower <= allowed => Status::Converged,
             Status::Converged => Status::Rounding,
             _ => end,
-        })
+        };
+        Ok((proof, status))
     }
 
-    /// Stores the result of the upper bound. `face`: a face of the inner model near it, read for witness points alone;
+    /// Returns the proof of the upper bound. `face`: a face of the inner model near it, read for witness points alone;
     /// `other`: returns another, if the foot is not close to the first: the ray of a refined direction may cross neither.
     #[inline(always)]
-    fn store_proof<const N: usize>(
-        &mut self,
+    fn proof<const N: usize>(
+        &self,
         set: &VertexSet<N>,
         face: &[Vertex; 3],
         other: impl FnOnce() -> [Vertex; 3],
         lower: f64,
         gap: f64,
-    ) {
-        self.is_inconsistent = self.query.is_inconsistent(set);
+    ) -> Proof {
         let upper = &self.query.upper;
         let mut points = [Vec3::zeros(); 2];
         if self.request.wants_points {
@@ -568,12 +574,13 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
                 }
             }
         }
-        self.proof = Some(Proof {
+        Proof {
             upper: upper.depth,
             dir: upper.dir,
             lower,
             points,
-        });
+            is_inconsistent: self.query.is_inconsistent(set),
+        }
     }
 }
 
@@ -628,10 +635,8 @@ mod tests {
         let mut query = SupportQuery::new(md, center, TOLERANCE);
         let first = query.evaluate_first(&request.ray, false)?;
         let mut set = VertexSet::EMPTY;
-        let mut warm = WarmStart::COLD;
-        let hit = penetration(&mut query, &first, &request, arena, &mut set, &mut warm)?;
-        assert_eq!((warm.dir, warm.depth), (hit.dir, hit.depth));
-        Ok(hit)
+        let cold = WarmStart::COLD;
+        penetration(&mut query, &first, &request, arena, &mut set, &cold)
     }
 
     /// Returns a point as the difference of the centers of an object there and one at the origin.

@@ -17,6 +17,7 @@
 use crate::math::{EPSILON, Vec3, ZERO, unit};
 use crate::minkowski::general_position::in_general_position;
 use crate::minkowski::support_query::Stop;
+use crate::types::Solution;
 
 /// Result of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,7 +67,12 @@ impl WarmStart {
 
     /// Makes the state of an overlap with this penetration direction, unit.
     pub fn towards(dir: Vec3, is_general: bool) -> Self {
-        Self::hit(dir, is_general, 0.0, [0.0; 2])
+        Self {
+            dir,
+            kind: WarmKind::Overlap,
+            is_general,
+            ..Self::COLD
+        }
     }
 
     /// Makes a state from a guess of the penetration direction, of any length; cold if that is zero or not
@@ -95,13 +101,13 @@ impl WarmStart {
     }
 
     /// Makes the state of a hit.
-    pub fn hit(dir: Vec3, is_general: bool, depth: f64, radius: [f64; 2]) -> Self {
+    pub fn hit(found: &Solution) -> Self {
         Self {
-            dir,
-            depth,
-            radius,
+            dir: found.dir,
+            depth: found.depth,
+            radius: found.radius,
             kind: WarmKind::Overlap,
-            is_general,
+            is_general: found.is_general,
         }
     }
 
@@ -176,7 +182,13 @@ mod tests {
 
     #[test]
     fn packing_and_unpacking_preserves_a_state() {
-        let state = WarmStart::hit(Vec3::new(0.6, 0.0, -0.8), true, 0.25, [1.0, 0.5]);
+        let state = WarmStart::hit(&Solution {
+            dir: Vec3::new(0.6, 0.0, -0.8),
+            depth: 0.25,
+            radius: [1.0, 0.5],
+            is_general: true,
+            ..Solution::default()
+        });
         let (reals, words) = state.pack();
         let again = WarmStart::unpack(reals, words);
         assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
