@@ -11,8 +11,7 @@
 //!    e.g. for a thin plate with the object on its far side. The certificate of the global minimum implies the overlap;
 //!    the local search tests its last face; queries without either use [`Pair::prove_overlap`].
 //! 4. *Contact position*: compute the [`contact_position`], or take the middle of the witness points.
-//! 5. *Note the separation*: if the objects are separated, the state for the next query keeps the axis. That of an
-//!    overlap is set by the solver.
+//! 5. *Note the result*: the state for the next query keeps the separating axis, or what the solver returned of an overlap.
 //!
 //! `include/README.md` has the outputs of each query. All assume valid support functions ([`crate::types`]).
 
