@@ -50,7 +50,7 @@ use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::{LARGE_PART, SMALL_PART};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{WIDEST_RING_TAN, discover, refine, ring};
+use crate::portal::{Portal, WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 use crate::types::{Penetration, Status};
 
@@ -182,7 +182,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     fn run_without_polytope(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-    ) -> Result<Option<[Vertex; 3]>, Stop> {
+    ) -> Result<Option<Portal>, Stop> {
         let mut ray = self.request.ray;
         let opposite = match self.request.center {
             Some(_) => None,
@@ -241,7 +241,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
         ray: &Vec3,
-    ) -> Result<Option<[Vertex; 3]>, Stop> {
+    ) -> Result<Option<Portal>, Stop> {
         let gap = self.allowed_gap();
         let is_central = self.is_central(ray);
         let query = &mut *self.query;
@@ -309,9 +309,8 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     fn certify(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-        portal: &[Vertex; 3],
+        portal: &Portal,
     ) -> Result<bool, Stop> {
-        let [a, b, c] = portal.each_ref().map(|v| v.w);
         let scale = &self.query.scale;
         let size = scale.size();
         let tolerance = scale.tolerance(self.request.limits.gap.tolerance);
@@ -319,7 +318,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
         // A lower bound of at most the contact epsilon proves no overlap.
         let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
-        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
+        let Some(distance) = base_distance(&self.interior.v, &portal.points(), least, size) else {
             return Ok(false);
         };
         let lower = distance - error;
@@ -327,7 +326,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         if self.query.upper.depth - lower > tolerance {
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
         }
-        self.store_proof(set, &face, || *portal, lower, allowed);
+        self.store_proof(set, &face.corners, || portal.corners, lower, allowed);
         Ok(true)
     }
 
@@ -338,7 +337,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     fn expand_from(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-        portal: Option<&[Vertex; 3]>,
+        portal: Option<&Portal>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<(Proof, Status), Stop> {
         for attempt in 0..3 {
@@ -348,7 +347,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             let dir = self.query.upper.dir;
             let start = match (attempt, portal) {
                 (0, None) => continue,
-                (0, Some([a, b, c])) => [self.find_apex(set)?, *a, *b, *c],
+                (0, Some(Portal { corners: [a, b, c] })) => [self.find_apex(set)?, *a, *b, *c],
                 (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
                 _ => self.find_gjk_tetrahedron(set, &dir)?,
             };
@@ -512,9 +511,10 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         };
         let mut refined = None;
         if end == Status::Converged && self.query.upper.depth - lower > tolerance {
-            let mut face = exit_face(&self.query.upper, set, self.allowed_gap());
+            let corners = exit_face(&self.query.upper, set, self.allowed_gap());
+            let mut face = Portal { corners };
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
-            refined = Some(face);
+            refined = Some(face.corners);
         }
         let upper = self.query.upper.depth;
         let gap = self.allowed_gap();
