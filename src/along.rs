@@ -29,8 +29,8 @@ use crate::math::{Vec3, larger, lesser, normal};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
-use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{MAX_STEPS, choose_corner, discover};
+use crate::minkowski::vertex_set::VertexSet;
+use crate::portal::{MAX_STEPS, Portal, discover};
 use crate::trace;
 use crate::types::{Settings, Solution, Status};
 
@@ -64,7 +64,8 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     let mut query = SupportQuery::new(md, None, settings.tolerance);
     let first = query.evaluate_first(dir, false)?;
     set.push(&query.upper.dir, &first);
-    let mut portal = [set.farthest_vertex(dir); 3];
+    let corners = [set.farthest_vertex(dir); 3];
+    let mut portal = Portal { corners };
     let mut ray = Ray {
         exit_plane: query.upper,
         query,
@@ -106,7 +107,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
     }
 
     /// Finds a portal and refines it. Returns the lower bound, metres; 0 if there is no portal.
-    fn find_lower_bound(&mut self, portal: &mut [Vertex; 3]) -> Result<f64, Stop> {
+    fn find_lower_bound(&mut self, portal: &mut Portal) -> Result<f64, Stop> {
         let (length, tolerance) = (self.upper(), self.tolerance());
         let found = discover(
             &mut self.query,
@@ -131,7 +132,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
                 return Ok(lower);
             }
             // The corners are on the plane within rounding: take the lowest.
-            let [a, b, c] = portal.each_ref().map(|v| n.dot(&v.w));
+            let [a, b, c] = portal.points().map(|v| n.dot(&v));
             let offset = lesser(lesser(a, b), c);
             let rounding = self.query.scale.height_eps() * n.norm();
             lower = larger((offset - rounding) / along, lower);
@@ -140,7 +141,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
                 return Ok(lower);
             }
             self.iterations += 1;
-            make_room(self.set, portal);
+            make_room(self.set, &mut portal.corners);
             let length = n.norm();
             self.query.tolerance = self.settings.tolerance * (along / length);
             let sample = self.query.evaluate(self.set, &(n / length))?;
@@ -148,7 +149,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             if !(n.dot(&sample.w) - offset > rounding) {
                 return Ok(lower);
             }
-            self.replace_corner(portal, sample.vertex());
+            portal.replace_chosen_corner(&self.dir, sample.vertex());
         }
     }
 
@@ -170,40 +171,35 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
     }
 
     /// Refines the portal by known differences. Returns its normal, of any length.
-    fn refine_by_known(&self, portal: &mut [Vertex; 3]) -> Vec3 {
+    fn refine_by_known(&self, portal: &mut Portal) -> Vec3 {
         let mut n = Vec3::zeros();
         for _ in 0..MAX_STEPS {
-            n = normal(&portal[0].w, &portal[1].w, &portal[2].w);
+            let [a, b, c] = &portal.points();
+            n = normal(a, b, c);
             let w = self.set.farthest_vertex(&n);
             let level = INSERT_HEIGHT_GAPS * self.tolerance() * n.dot(&self.dir)
                 + self.query.scale.height_eps() * n.norm();
             // A corner is above its own face only by rounding; taken again, it would repeat until MAX_STEPS.
-            let is_corner = portal.iter().any(|v| v.pair == w.pair);
-            if is_corner || !(n.dot(&(w.w - portal[0].w)) > level) {
+            let is_corner = portal.corners.iter().any(|v| v.pair == w.pair);
+            if is_corner || !(n.dot(&(w.w - a)) > level) {
                 break;
             }
-            self.replace_corner(portal, w);
+            portal.replace_chosen_corner(&self.dir, w);
         }
         n
     }
 
-    /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
-    fn replace_corner(&self, portal: &mut [Vertex; 3], w: Vertex) {
-        let replaced = choose_corner(portal.each_ref().map(|v| v.w), &self.dir, &w.w);
-        portal[replaced.min(2)] = w;
-    }
-
     /// Returns the result for a lower bound, metres. The witness points are those of the point of the portal at which
     /// the ray crosses it.
-    fn result(&self, portal: &[Vertex; 3], lower: f64) -> Solution {
+    fn result(&self, portal: &Portal, lower: f64) -> Solution {
         let (depth, max_iterations) = (self.upper(), self.settings.max_iterations);
         let status = Status::of_early_end(self.budget(), max_iterations, MAX_PROVEN_POINTS);
-        let [a, b, c] = portal.each_ref().map(|v| v.w);
+        let [a, b, c] = portal.points();
         let n = normal(&a, &b, &c);
         // Without a portal the parameter is NaN.
         let crossing = larger(lesser(n.dot(&a) / n.dot(&self.dir), depth), 0.0);
         let weights = barycentric::triangle(&(self.dir * crossing), &a, &b, &c).weights;
-        let corners = portal.map(|v| self.set.point(v.pair));
+        let corners = portal.corners.map(|v| self.set.point(v.pair));
         let (point1, point2) = support::witnesses(&weights, corners.each_ref());
         Solution {
             depth,

@@ -51,8 +51,8 @@ use crate::minkowski::tuning::{
     CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILED_PREDICTIONS, MAX_MISS_REL,
     MIN_GAIN_GAPS, SAME_VALLEY_COS,
 };
-use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{MAX_STEPS, discover, replace_corner};
+use crate::minkowski::vertex_set::VertexSet;
+use crate::portal::{MAX_STEPS, Portal, discover};
 use crate::trace;
 use crate::types::{Settings, Solution, Status};
 
@@ -236,16 +236,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Refines the portal of the ray until there is a next step.
     ///
     /// One loop over one portal: the tests share its face, and each ends the loop or evaluates a direction.
-    fn refine(
-        &mut self,
-        ray: &Vec3,
-        portal: &mut [Vertex; 3],
-        tolerance: f64,
-    ) -> Result<Step, Stop> {
+    fn refine(&mut self, ray: &Vec3, portal: &mut Portal, tolerance: f64) -> Result<Step, Stop> {
         let mut along_normal = false;
         let mut height_eps = self.query.scale.height_eps();
         for _ in 0..MAX_STEPS {
-            let [a, b, c] = portal.each_ref().map(|v| v.w);
+            let [a, b, c] = portal.points();
             let (x, y) = (b - a, c - a);
             let n = x.cross(&y);
             let level = INSERT_HEIGHT_GAPS * tolerance + height_eps;
@@ -256,7 +251,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // Compares squares, which need no root.
             let is_above = height > 0.0 && height * height > level * level * n.norm_squared();
             if !is_above {
-                let Some(face) = Face::new(portal, &n) else {
+                let Some(face) = Face::new(&portal.corners, &n) else {
                     return Ok(Step::End(Status::Rounding));
                 };
                 let is_inside = face.offset > 0.0 && face.has_foot(4.0 * height_eps);
@@ -322,7 +317,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 w = sample.vertex();
             }
             along_normal = false;
-            replace_corner(portal, ray, w);
+            portal.replace_corner(ray, w);
         }
         Ok(Step::End(Status::Rounding))
     }

@@ -61,6 +61,84 @@ const TILT_GROWTH: f64 = 1.4;
 const WIDEST_TILT_DISTANCES: f64 = 3.0;
 /// See [`WIDEST_TILT_DISTANCES`]. Measured: without the edge 21 % more support points.
 const WIDEST_TILT_EDGES: f64 = 0.75;
+/// A triangle of points of D that a ray crosses, unless it is a ring. Its normal points outward: along the ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Portal {
+    /// In the order that gives the normal its direction.
+    pub corners: [Vertex; 3],
+}
+
+/// The plane N·x = d through the corners of a portal.
+#[derive(Clone, Copy, Debug)]
+pub struct PortalPlane {
+    /// N, of any length.
+    pub normal: Vec3,
+    /// The length of N.
+    pub length: f64,
+    /// d: the distance from the origin, times the length of N; negative if the origin is on the outer side.
+    pub offset: f64,
+}
+
+impl PortalPlane {
+    /// Returns whether `w` is above the plane by more than `level`, metres; `false` for NaN.
+    #[inline(always)]
+    pub fn is_below(&self, w: &Vec3, level: f64) -> bool {
+        self.normal.dot(w) - self.offset > level * self.length
+    }
+}
+
+impl Portal {
+    /// Returns the points of D that are its corners.
+    #[inline(always)]
+    pub fn points(&self) -> [Vec3; 3] {
+        self.corners.each_ref().map(|v| v.w)
+    }
+
+    /// Returns the plane of the corners.
+    #[inline(always)]
+    pub fn plane(&self) -> PortalPlane {
+        let [a, b, c] = self.points();
+        let normal = (b - a).cross(&(c - a));
+        PortalPlane {
+            normal,
+            length: normal.norm(),
+            offset: normal.dot(&a),
+        }
+    }
+
+    /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
+    #[inline(always)]
+    pub fn replace_corner(&mut self, ray: &Vec3, w: Vertex) {
+        // The side of the plane through the ray and w on which each corner lies.
+        let normal = ray.cross(&w.w);
+        let [side0, side1, side2] = self.corners.each_ref().map(|v| normal.dot(&v.w) > 0.0);
+        // Constant indices keep the corners in registers.
+        if side0 && !side1 {
+            self.corners[2] = w;
+        } else if side1 && !side2 {
+            self.corners[0] = w;
+        } else {
+            self.corners[1] = w;
+        }
+    }
+
+    /// Replaces the corner that [`choose_corner`] returns by `w`, a point beyond the portal.
+    #[inline(always)]
+    pub fn replace_chosen_corner(&mut self, ray: &Vec3, w: Vertex) {
+        self.corners[choose_corner(self.points(), ray, &w.w).min(2)] = w;
+    }
+
+    /// Returns whether the ray crosses the portal, within `eps`, metres.
+    pub fn is_crossed(&self, ray: &Vec3, eps: f64) -> bool {
+        let [a, b, c] = &self.points();
+        [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
+            // The product with the edge, not with q, loses no digits for small portals.
+            let edge = q - p;
+            let side = ray.dot(&p.cross(&edge));
+            side >= 0.0 || side * side <= eps * eps * edge.norm_squared()
+        })
+    }
+}
 
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
@@ -84,7 +162,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     length: f64,
     near2: f64,
     ring_around: Option<(&Vec3, f64)>,
-) -> Result<Option<[Vertex; 3]>, Stop> {
+) -> Result<Option<Portal>, Stop> {
     trace::stage("discovery");
     let mut v1 = set.farthest_vertex(ray);
     let mut v2: Option<Vertex> = None;
@@ -151,7 +229,8 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
                     *v2 = next;
                 } else if towards_ray.dot(&next.w) > 0.0 {
                     let [first, second] = if side > 0.0 { [v1, *v2] } else { [*v2, v1] };
-                    return Ok(Some([first, second, next]));
+                    let corners = [first, second, next];
+                    return Ok(Some(Portal { corners }));
                 } else {
                     // A known difference between the edge and the ray.
                     *v2 = next;
@@ -212,7 +291,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     axis: &Vec3,
     tilt: f64,
-) -> Result<Option<[Vertex; 3]>, Stop> {
+) -> Result<Option<Portal>, Stop> {
     trace::stage("ring");
     let e1 = perpendicular(axis);
     let e2 = axis.cross(&e1);
@@ -231,23 +310,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
     let normal = x.cross(&y);
     let is_wide = normal.norm_squared() > 0.01 * x.norm_squared() * y.norm_squared();
-    Ok(is_wide.then_some(corners))
-}
-
-/// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
-#[inline(always)]
-pub fn replace_corner(portal: &mut [Vertex; 3], ray: &Vec3, w: Vertex) {
-    // The side of the plane through the ray and w on which each corner lies.
-    let normal = ray.cross(&w.w);
-    let [side0, side1, side2] = portal.each_ref().map(|v| normal.dot(&v.w) > 0.0);
-    // Constant indices keep the corners in registers.
-    if side0 && !side1 {
-        portal[2] = w;
-    } else if side1 && !side2 {
-        portal[0] = w;
-    } else {
-        portal[1] = w;
-    }
+    Ok(is_wide.then_some(Portal { corners }))
 }
 
 /// The weight of the area of the new portal in [`choose_corner`]: a few ulps.
@@ -278,17 +341,6 @@ pub fn choose_corner(corners: [Vec3; 3], ray: &Vec3, w: &Vec3) -> usize {
     replaced
 }
 
-/// Returns whether the ray crosses a portal, within `eps`, metres. The ray need not cross a portal that is a ring.
-pub fn is_crossed(portal: &[Vertex; 3], ray: &Vec3, eps: f64) -> bool {
-    let [a, b, c] = portal.each_ref().map(|corner| &corner.w);
-    [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
-        // The product with the edge, not with q, loses no digits for small portals.
-        let edge = q - p;
-        let side = ray.dot(&p.cross(&edge));
-        side >= 0.0 || side * side <= eps * eps * edge.norm_squared()
-    })
-}
-
 /// Refines the portal outwards: with known differences as long as one is above it, and with support calls as long as
 /// the origin is on its outer side or the contact is shallow.
 ///
@@ -300,32 +352,34 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
     ray: &Vec3,
-    portal: &mut [Vertex; 3],
+    portal: &mut Portal,
     limit: &GapLimit,
 ) -> Result<(), Stop> {
     trace::stage("refinement");
     let mut along_normal = false;
     for _ in 0..MAX_STEPS {
-        let normal = (portal[1].w - portal[0].w).cross(&(portal[2].w - portal[0].w));
-        let n2 = normal.norm_squared();
-        let offset = normal.dot(&portal[0].w);
-        if !(n2 > 0.0) || offset > 0.0 && !is_shallow(query) {
+        let plane = portal.plane();
+        let PortalPlane {
+            normal,
+            length,
+            offset,
+        } = plane;
+        if !(length > 0.0) || offset > 0.0 && !is_shallow(query) {
             return Ok(());
         }
-        let length = n2.sqrt();
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
         let mut w = set.farthest_vertex(&normal);
-        if !(normal.dot(&w.w) - offset > INSERT_HEIGHT_GAPS * gap * length) {
+        if !plane.is_below(&w.w, INSERT_HEIGHT_GAPS * gap) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }
             let is_along_normal = along_normal || offset < 0.0;
+            let corners = |_: &_| portal.corners;
             let (sample, source) =
-                evaluate_beyond(query, set, fit, |_| *portal, &normal, gap, is_along_normal)?;
+                evaluate_beyond(query, set, fit, corners, &normal, gap, is_along_normal)?;
             w = sample.vertex();
-            let is_above = normal.dot(&w.w) - offset > query.scale.height_eps() * length;
-            if !is_above {
+            if !plane.is_below(&w.w, query.scale.height_eps()) {
                 if source == DirectionSource::Normal {
                     return Ok(());
                 }
@@ -334,7 +388,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             }
         }
         along_normal = false;
-        replace_corner(portal, ray, w);
+        portal.replace_corner(ray, w);
     }
     Ok(())
 }
@@ -354,7 +408,7 @@ mod tests {
         b: B,
         center1: Vec3,
         center2: Vec3,
-    ) -> Option<(Vec3, [[Vertex; 3]; 2], f64)> {
+    ) -> Option<(Vec3, [Portal; 2], f64)> {
         let md = difference(a, b);
         let c = SupportPoint {
             v: center1 - center2,
@@ -405,7 +459,7 @@ mod tests {
             if let Some((ray, portals, _)) = solved {
                 found += 1;
                 assert!(
-                    portals.iter().all(|portal| is_crossed(portal, &ray, 1e-12)),
+                    portals.iter().all(|portal| portal.is_crossed(&ray, 1e-12)),
                     "{round}"
                 );
             }
@@ -421,12 +475,12 @@ mod tests {
             let b = placed(&cube, &crate::test_shapes::Rotation::identity(), at);
             let (ray, portals, _) =
                 solve(hull(&cube), hull(&b), Vec3::zeros(), at).expect("a portal");
-            assert!(portals.iter().all(|portal| is_crossed(portal, &ray, 1e-12)));
+            assert!(portals.iter().all(|portal| portal.is_crossed(&ray, 1e-12)));
             let at = at.normalize() * 0.9;
             let balls = [ball(Vec3::zeros(), 0.5), ball(at, 0.5)];
             let [a, b] = balls;
             let (ray, portals, depth) = solve(a, b, Vec3::zeros(), at).expect("a portal");
-            assert!(portals.iter().all(|portal| is_crossed(portal, &ray, 1e-12)) && depth > 0.0);
+            assert!(portals.iter().all(|portal| portal.is_crossed(&ray, 1e-12)) && depth > 0.0);
         }
     }
 }

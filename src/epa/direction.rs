@@ -21,8 +21,8 @@ use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
-use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::replace_corner;
+use crate::minkowski::vertex_set::VertexSet;
+use crate::portal::Portal;
 use crate::trace;
 
 /// The largest number of directions of a refinement. Measured on 20 pairs of primitives 0.3 m deep (`directions.c`): with 3
@@ -42,7 +42,7 @@ const MAX_REPLACED: u32 = 10;
 pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    face: &mut [Vertex; 3],
+    face: &mut Portal,
     lower: f64,
     tolerance: f64,
 ) -> Result<(), Stop> {
@@ -72,7 +72,7 @@ pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
             break;
         }
         has_failed = prediction.is_some() && !(sample.h < target);
-        replace_corner(face, &query.upper.dir, sample.vertex());
+        face.replace_corner(&query.upper.dir, sample.vertex());
     }
     Ok(())
 }
@@ -81,13 +81,13 @@ pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
 /// `level`, metres. Returns its unit normal and its distance from the origin, metres; `None` if the corners lie on a line.
 fn refine_face<const N: usize>(
     set: &VertexSet<N>,
-    face: &mut [Vertex; 3],
+    face: &mut Portal,
     ray: &Vec3,
     level: f64,
 ) -> Option<(Vec3, f64)> {
     let mut plane = None;
     for _ in 0..MAX_REPLACED {
-        let [a, b, c] = face.each_ref().map(|v| v.w);
+        let [a, b, c] = face.points();
         let Some(normal) = normalise_unscaled(&(b - a).cross(&(c - a))) else {
             break;
         };
@@ -97,7 +97,7 @@ fn refine_face<const N: usize>(
         if !(normal.dot(&w.w) > offset + level) {
             break;
         }
-        replace_corner(face, ray, w);
+        face.replace_corner(ray, w);
     }
     plane
 }
@@ -106,14 +106,16 @@ fn refine_face<const N: usize>(
 /// upper bound; `None` without one. `normal`: that of the face.
 fn predict<const N: usize>(
     set: &VertexSet<N>,
-    face: &[Vertex; 3],
+    face: &Portal,
     upper: &SupportPlane,
     normal: &Vec3,
     lower: f64,
 ) -> Option<(Vec3, f64)> {
     let is_possible = |(_, value): &(Vec3, f64)| *value >= lower && *value <= upper.depth;
-    let is_known = !face.iter().any(|v| v.pair.is_interior());
-    let sphere = is_known.then(|| SphereFit::of_face(set, face, upper).predict(set, face, normal));
+    let is_known = !face.corners.iter().any(|v| v.pair.is_interior());
+    let corners = &face.corners;
+    let sphere =
+        is_known.then(|| SphereFit::of_face(set, corners, upper).predict(set, corners, normal));
     sphere.flatten().filter(is_possible).or_else(|| {
         let step = newton_step(set, upper)?;
         Some((step.dir, step.value)).filter(is_possible)
@@ -140,11 +142,12 @@ mod tests {
         let e1 = crate::math::perpendicular(shortest);
         let e2 = shortest.cross(&e1);
         let turn = r.within(0.0, 2.0);
-        let mut face = [0.0, 2.0, 4.0].map(|angle| {
+        let corners = [0.0, 2.0, 4.0].map(|angle| {
             let (sine, cosine) = (turn + angle * core::f64::consts::FRAC_PI_3).sin_cos();
             let n = (shortest + (e1 * cosine + e2 * sine) * r.within(0.2, 0.3)).normalize();
             query.evaluate(&mut set, &n).unwrap().vertex()
         });
+        let mut face = Portal { corners };
         refine_direction(&mut query, &mut set, &mut face, 0.0, TOLERANCE).unwrap();
         let turn = (query.upper.dir - shortest).norm();
         (turn, query.upper.depth, query.support_points() - 3)

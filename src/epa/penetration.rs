@@ -49,7 +49,7 @@ use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{WIDEST_RING_TAN, discover, refine, ring};
+use crate::portal::{Portal, WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 use crate::types::{Solution, Status};
 
@@ -102,7 +102,7 @@ enum Outcome {
     /// The minimum is proven.
     Proven(Proof),
     /// The portal from which the polytope starts; `None` if none was found.
-    Open(Option<[Vertex; 3]>),
+    Open(Option<Portal>),
 }
 
 /// The state of a query.
@@ -250,7 +250,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
         ray: &Vec3,
-    ) -> Result<Option<[Vertex; 3]>, Stop> {
+    ) -> Result<Option<Portal>, Stop> {
         let gap = self.allowed_gap();
         let is_central = self.is_central(ray);
         let query = &mut *self.query;
@@ -314,9 +314,8 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     fn certify(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-        portal: &[Vertex; 3],
+        portal: &Portal,
     ) -> Result<Option<Proof>, Stop> {
-        let [a, b, c] = portal.each_ref().map(|v| v.w);
         let scale = &self.query.scale;
         let size = scale.size();
         let tolerance = scale.tolerance(self.request.limits.gap.tolerance);
@@ -324,7 +323,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         let error = PLANE_ERROR_ULPS * f64::EPSILON * size + scale.support_eps();
         // A lower bound of at most the contact epsilon proves no overlap.
         let least = larger(self.query.upper.depth - allowed, scale.contact_eps()) + error;
-        let Some(distance) = base_distance(&self.interior.v, &[a, b, c], least, size) else {
+        let Some(distance) = base_distance(&self.interior.v, &portal.points(), least, size) else {
             return Ok(None);
         };
         let lower = distance - error;
@@ -332,7 +331,13 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         if self.query.upper.depth - lower > tolerance {
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
         }
-        Ok(Some(self.proof(set, &face, || *portal, lower, allowed)))
+        Ok(Some(self.proof(
+            set,
+            &face.corners,
+            || portal.corners,
+            lower,
+            allowed,
+        )))
     }
 
     /// Expands polytopes from up to three starts, until one contains the origin and is not ended by rounding: the
@@ -342,7 +347,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     fn expand_from(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-        portal: Option<&[Vertex; 3]>,
+        portal: Option<&Portal>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<(Proof, Status), Stop> {
         // The proof with the least gap.
@@ -354,7 +359,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             let dir = self.query.upper.dir;
             let start = match (attempt, portal) {
                 (0, None) => continue,
-                (0, Some([a, b, c])) => [self.find_apex(set)?, *a, *b, *c],
+                (0, Some(Portal { corners: [a, b, c] })) => [self.find_apex(set)?, *a, *b, *c],
                 (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
                 _ => self.find_gjk_tetrahedron(set, &dir)?,
             };
@@ -524,9 +529,10 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         };
         let mut refined = None;
         if end == Status::Converged && self.query.upper.depth - lower > tolerance {
-            let mut face = exit_face(&self.query.upper, set, self.allowed_gap());
+            let corners = exit_face(&self.query.upper, set, self.allowed_gap());
+            let mut face = Portal { corners };
             refine_direction(self.query, set, &mut face, lower, tolerance)?;
-            refined = Some(face);
+            refined = Some(face.corners);
         }
         let upper = self.query.upper.depth;
         let gap = self.allowed_gap();

@@ -33,7 +33,7 @@ use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::tuning::MAX_STALLS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{MAX_STEPS, discover, is_crossed, replace_corner};
+use crate::portal::{MAX_STEPS, Portal, discover};
 use crate::trace;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
@@ -178,7 +178,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     inner: &Vec3,
     is_inside: bool,
-) -> Result<Option<[Vertex; 3]>, Stop> {
+) -> Result<Option<Portal>, Stop> {
     trace::stage("enclosing portal");
     let distance = inner.norm();
     if !(distance > query.scale.contact_eps()) {
@@ -194,7 +194,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     };
     // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.
     for _ in 0..MAX_STEPS {
-        let [a, b, d] = &portal.each_ref().map(|corner| corner.w);
+        let [a, b, d] = &portal.points();
         let n = normal(a, b, d);
         let length = n.norm();
         let contact_eps = query.scale.contact_eps() * length;
@@ -204,7 +204,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * query.scale.size() * edge2;
         if offset > larger(contact_eps, error) {
             let is_enclosing = n.dot(inner) < 0.0
-                && is_crossed(&portal, &ray, query.scale.height_eps())
+                && portal.is_crossed(&ray, query.scale.height_eps())
                 && (is_inside || has_points_around(query, set, &mut portal, inner)?);
             return Ok(is_enclosing.then_some(portal));
         }
@@ -213,13 +213,13 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
             if !(length > 0.0) {
                 return Ok(None);
             }
-            make_room(set, &mut portal);
+            make_room(set, &mut portal.corners);
             w = query.evaluate(set, &(n / length))?.vertex();
         }
         if !(n.dot(&w.w) - offset > query.scale.height_eps() * length) {
             return Ok(None);
         }
-        replace_corner(&mut portal, &ray, w);
+        portal.replace_corner(&ray, w);
     }
     Ok(None)
 }
@@ -233,10 +233,10 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
 fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    portal: &mut [Vertex; 3],
+    portal: &mut Portal,
     inner: &Vec3,
 ) -> Result<bool, Stop> {
-    let [a, b, c] = portal.each_ref().map(|corner| corner.w);
+    let [a, b, c] = portal.points();
     let mut is_on_face = false;
     for (p, q) in [(a, b), (b, c), (c, a)] {
         let outward = normal(inner, &q, &p);
@@ -251,7 +251,7 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
             let Some(n) = unit(&outward) else {
                 return Ok(false);
             };
-            make_room(set, portal);
+            make_room(set, &mut portal.corners);
             query.evaluate(set, &n)?;
         }
     }
@@ -342,7 +342,7 @@ fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
         evaluate_normals_of_flat(query, set, &inner.v)?;
         return Ok(simplex);
     };
-    let [a, b, c] = portal.map(|corner| set.point(corner.pair));
+    let [a, b, c] = portal.corners.map(|corner| set.point(corner.pair));
     Ok(Enclosing {
         corners: [inner, a, b, c],
     })
