@@ -30,7 +30,7 @@ use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::portal::{MAX_STEPS, Portal, discover};
+use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
 use crate::types::{Settings, Solution, Status};
 
@@ -115,7 +115,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             &self.dir,
             length,
             0.5 * tolerance * length,
-            None,
+            NearRay::Perpendicular,
         )?;
         self.note_planes(0);
         let Some(found) = found else {
@@ -149,7 +149,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             if !(n.dot(&sample.w) - offset > rounding) {
                 return Ok(lower);
             }
-            portal.replace_chosen_corner(&self.dir, sample.vertex());
+            portal.replace_corner_exactly(&self.dir, sample.vertex());
         }
     }
 
@@ -184,7 +184,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             if is_corner || !(n.dot(&(w.w - a)) > level) {
                 break;
             }
-            portal.replace_chosen_corner(&self.dir, w);
+            portal.replace_corner_exactly(&self.dir, w);
         }
         n
     }

@@ -52,7 +52,7 @@ use crate::minkowski::tuning::{
     MIN_GAIN_GAPS, SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::VertexSet;
-use crate::portal::{MAX_STEPS, Portal, discover};
+use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
 use crate::types::{Settings, Solution, Status};
 
@@ -187,9 +187,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // The approximate length of the ray in D from the interior point.
             let length = (first.w - self.interior).dot(&ray);
             // The ring's tilt is half of that of the directions that confirm a minimum.
-            let ring_around = Some((&ray, 0.5 * CONFIRM_TILT_RAD));
+            let tilt = 0.5 * CONFIRM_TILT_RAD;
+            let ring = NearRay::Ring { axis: &ray, tilt };
             let near2 = 0.5 * tolerance * length;
-            let portal = discover(self.query, self.set, &ray, length, near2, ring_around)?;
+            let portal = discover(self.query, self.set, &ray, length, near2, ring)?;
             let step = match portal {
                 Some(mut portal) => self.refine(&ray, &mut portal, tolerance)?,
                 None => Step::End(Status::Rounding),

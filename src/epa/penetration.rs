@@ -49,7 +49,7 @@ use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{Portal, WIDEST_RING_TAN, discover, refine, ring};
+use crate::portal::{NearRay, Portal, WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 use crate::types::{Solution, Status};
 
@@ -273,8 +273,11 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             }
         }
         let lowest = query.upper.dir;
-        let ring_around = Some((&lowest, ring_radius / length));
-        let Some(mut portal) = discover(query, set, ray, length, near2, ring_around)? else {
+        let near_ray = NearRay::Ring {
+            axis: &lowest,
+            tilt: ring_radius / length,
+        };
+        let Some(mut portal) = discover(query, set, ray, length, near2, near_ray)? else {
             return Ok(None);
         };
         refine(

@@ -33,7 +33,7 @@ use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::tuning::MAX_STALLS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{MAX_STEPS, Portal, discover};
+use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
@@ -187,9 +187,10 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     let ray = -inner / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
-    let ring_around = Some((&ray, (2.0 * gap / length).sqrt()));
+    let tilt = (2.0 * gap / length).sqrt();
+    let ring = NearRay::Ring { axis: &ray, tilt };
     let near2 = 0.5 * gap * length;
-    let Some(mut portal) = discover(query, set, &ray, length, near2, ring_around)? else {
+    let Some(mut portal) = discover(query, set, &ray, length, near2, ring)? else {
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.
