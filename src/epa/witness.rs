@@ -14,8 +14,7 @@ use crate::minkowski::vertex_set::{Vertex, VertexSet};
 /// one of these triangles:
 ///
 /// 1. the face, if that point is within `gap`, metres, of the foot;
-/// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction;
-/// 3. or with one corner replaced by the interior point.
+/// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction.
 ///
 /// Returns them with the square of that distance, m².
 #[inline(always)]
@@ -32,21 +31,19 @@ pub fn witness_points<const N: usize>(
     let mut best = closest(&corners);
     let mut replaced = None;
     if best.distance2 > max_foot_distance2(upper, gap) {
-        for point in [&upper.point, interior] {
-            for i in 0..3 {
-                let mut triangle = corners;
-                triangle[i] = point.v;
-                let other = closest(&triangle);
-                if other.distance2 < best.distance2 {
-                    (best, replaced) = (other, Some((i, *point)));
-                }
+        for i in 0..3 {
+            let mut triangle = corners;
+            triangle[i] = upper.point.v;
+            let other = closest(&triangle);
+            if other.distance2 < best.distance2 {
+                (best, replaced) = (other, Some(i));
             }
         }
     }
     let mut points = [Vec3::zeros(); 2];
     for (i, (weight, v)) in best.weights.iter().zip(face).enumerate() {
         let point = match replaced {
-            Some((k, point)) if k == i => point,
+            Some(k) if k == i => upper.point,
             _ if v.pair.is_interior() => *interior,
             _ => set.point(v.pair),
         };

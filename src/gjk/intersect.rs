@@ -119,9 +119,9 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     contains_origin(query, &mut set, center, &dir, false).map(|_| ())
 }
 
-/// Proves that D contains the origin by more than the contact epsilon (see the limitation at the head): with
-/// the known vertices of the set first, and with queries where these do not suffice. `center`: the
-/// difference of trusted centers, used while the query trusts it. `dir`: unit, the first search direction. `is_planar`:
+/// Proves that D contains the origin by more than the contact epsilon (see the limitation at the head): moves a simplex
+/// towards the origin until the simplex contains it, with the known vertices of the set first, and with queries where these do
+/// not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`: unit, the first search direction. `is_planar`:
 /// D lies in a plane, and a triangle or a segment that contains the origin suffices. A full set is compacted:
 /// indices change.
 ///
@@ -135,13 +135,59 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     dir: &Vec3,
     is_planar: bool,
 ) -> Result<Enclosing, Stop> {
+    trace::stage("GJK");
     let center = center.filter(|_| query.center.is_some());
-    let found = run_gjk(query, set, center, dir, is_planar);
-    // Repeat without the center if that is outside.
-    if found.is_ok() && center.is_some() && query.center.is_none() {
-        return run_gjk(query, set, None, dir, is_planar);
+    const { assert!(N >= CAPACITY) };
+    let mut dir = *dir;
+    let mut simplex = center.map_or(Simplex::EMPTY, |point| Simplex::of_interior(&point.v));
+    // The square of the least distance of the simplex from the origin; and, for a triangle, whether a point
+    // on the side away from the origin is known.
+    let (mut closest2, mut has_point_behind) = (f64::INFINITY, false);
+    let mut stalls = 0;
+    for _ in 0..MAX_STEPS {
+        let mut w = set.farthest_vertex(&dir);
+        let is_corner = |w: &Vertex| simplex.corners().iter().any(|c| c.pair == w.pair);
+        let is_beyond = dir.dot(&w.w) > query.scale.contact_eps();
+        if set.len() == 0 || !is_beyond || is_corner(&w) {
+            make_room(set, simplex.slots());
+            w = query.evaluate(set, &dir)?.vertex();
+        }
+        let contact_eps = query.scale.contact_eps();
+        let eps2 = contact_eps * contact_eps;
+        let was_triangle = simplex.len() == 3;
+        let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
+            if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
+                // The origin is in the plane of the old face within rounding: query the other side of D.
+                make_room(set, simplex.slots());
+                query.evaluate(set, &-dir)?;
+            }
+            let corners = simplex.tetrahedron();
+            if simplex.is_certain() {
+                return Ok(Enclosing::new(set, &corners, center));
+            }
+            return resolve_by_portal(query, set, corners, center, &dir);
+        };
+        // In a plane, a triangle that has the origin inside is a proof. Its normal is that of the plane: no direction.
+        if is_planar && (simplex.len() == 3 || distance2 <= eps2) {
+            let [a, b, c] = simplex.corners();
+            return Ok(Enclosing::new(set, &[a, b, c, c], center));
+        }
+        // Negated for NaN.
+        if !(distance2 > eps2 && distance2 < closest2) {
+            stalls += 1;
+            if stalls > MAX_STALLS {
+                break;
+            }
+        }
+        (closest2, has_point_behind) = (distance2, was_triangle && simplex.len() == 3);
+        let Some(n) = unit(&to) else { break };
+        dir = n;
     }
-    found
+    let [a, b, c] = simplex.corners();
+    if is_planar {
+        return Ok(Enclosing::new(set, &[a, b, c, c], center));
+    }
+    resolve_by_portal(query, set, [a, b, c, c], center, &dir)
 }
 
 /// Returns a point of D, in its interior or on its surface: on the segment from `from` to the support point along
@@ -257,68 +303,6 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
         }
     }
     Ok(true)
-}
-
-/// Moves a simplex towards the origin until the simplex contains it. Starts from the center, if any.
-fn run_gjk<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
-    set: &mut VertexSet<N>,
-    center: Option<&SupportPoint>,
-    dir: &Vec3,
-    is_planar: bool,
-) -> Result<Enclosing, Stop> {
-    trace::stage("GJK");
-    const { assert!(N >= CAPACITY) };
-    let mut dir = *dir;
-    let mut simplex = center.map_or(Simplex::EMPTY, |point| Simplex::of_interior(&point.v));
-    // The square of the least distance of the simplex from the origin; and, for a triangle, whether a point
-    // on the side away from the origin is known.
-    let (mut closest2, mut has_point_behind) = (f64::INFINITY, false);
-    let mut stalls = 0;
-    for _ in 0..MAX_STEPS {
-        let mut w = set.farthest_vertex(&dir);
-        let is_corner = |w: &Vertex| simplex.corners().iter().any(|c| c.pair == w.pair);
-        let is_beyond = dir.dot(&w.w) > query.scale.contact_eps();
-        if set.len() == 0 || !is_beyond || is_corner(&w) {
-            make_room(set, simplex.slots());
-            w = query.evaluate(set, &dir)?.vertex();
-        }
-        let contact_eps = query.scale.contact_eps();
-        let eps2 = contact_eps * contact_eps;
-        let was_triangle = simplex.len() == 3;
-        let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
-            if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
-                // The origin is in the plane of the old face within rounding: query the other side of D.
-                make_room(set, simplex.slots());
-                query.evaluate(set, &-dir)?;
-            }
-            let corners = simplex.tetrahedron();
-            if simplex.is_certain() {
-                return Ok(Enclosing::new(set, &corners, center));
-            }
-            return resolve_by_portal(query, set, corners, center, &dir);
-        };
-        // In a plane, a triangle that has the origin inside is a proof. Its normal is that of the plane: no direction.
-        if is_planar && (simplex.len() == 3 || distance2 <= eps2) {
-            let [a, b, c] = simplex.corners();
-            return Ok(Enclosing::new(set, &[a, b, c, c], center));
-        }
-        // Negated for NaN.
-        if !(distance2 > eps2 && distance2 < closest2) {
-            stalls += 1;
-            if stalls > MAX_STALLS {
-                break;
-            }
-        }
-        (closest2, has_point_behind) = (distance2, was_triangle && simplex.len() == 3);
-        let Some(n) = unit(&to) else { break };
-        dir = n;
-    }
-    let [a, b, c] = simplex.corners();
-    if is_planar {
-        return Ok(Enclosing::new(set, &[a, b, c, c], center));
-    }
-    resolve_by_portal(query, set, [a, b, c, c], center, &dir)
 }
 
 /// Resolves the case of an origin on the surface of a simplex within rounding, by a portal from a point

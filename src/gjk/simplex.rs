@@ -100,7 +100,8 @@ impl Simplex {
 
     /// Returns whether the origin is on the inner side of the old face by more than rounding, after
     /// [`Simplex::add`] has returned `None`. (The normal of a sliver may point to either side.) If the interior
-    /// point is a corner, the old face contains that point and lies inside D, unless D is flat.
+    /// point is a corner, the old face contains that point and lies inside D, unless D is flat. Measured (campaign `touches`
+    /// with 400,000 pairs): without this test a touch is a hit.
     pub fn is_certain(&self) -> bool {
         let [a, b, c, w] = self.tetrahedron().map(|corner| corner.w);
         let error = TRIPLE_PRODUCT_ULPS * EPSILON * a.norm() * b.norm() * c.norm();
