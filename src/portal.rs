@@ -131,9 +131,8 @@ impl Portal {
         }
     }
 
-    /// Does the same by [`choose_corner`], for bounds that rely on the crossing. Measured: everywhere it takes as many support
-    /// points, and up to 18 % more instructions; by the signs of differences, the nearest corner on the other side if all
-    /// are on one, 2 to 6 % more of a solver's own.
+    /// Does the same by [`choose_corner`], for a bound that relies on the crossing. Measured: elsewhere as many support points,
+    /// and at least 2 to 6 % more instructions of a search.
     #[inline(always)]
     pub fn replace_corner_exactly(&mut self, ray: &Vec3, w: Vertex) {
         self.corners[choose_corner(self.points(), ray, &w.w).min(2)] = w;
