@@ -22,7 +22,7 @@ here=$(dirname "$(realpath "$0")")
 make_chroot cross trixie
 in_chroot cross dpkg --add-architecture "$1"
 apt_in_chroot cross rustc-web cargo-web "libstd-rust-web-dev:$1" "g++-$tools" g++ libc6-dev \
-    qemu-user "libccd-dev:$1" libccd-dev ca-certificates cmake make pkg-config
+    qemu-user "libccd-dev:$1" libccd-dev libclang-dev ca-certificates cmake make pkg-config
 
 tree=$chroots/cross/tree
 rm -rf "$tree"
