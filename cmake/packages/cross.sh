@@ -49,7 +49,8 @@ here() {
 }
 # answers WHERE: of every entry point to pairs of all categories, one digest a pair
 answers() {
-    "$1" run -p lab --bin campaigns -- determinism | grep '^pair ' | sort
+    "$1" run -p lab --bin campaigns -- determinism >"$lists/all" || failed=1
+    grep '^pair ' "$lists/all" | sort
 }
 
 # All are run, so that one failure does not hide another.
