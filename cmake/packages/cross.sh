@@ -22,7 +22,7 @@ here=$(dirname "$(realpath "$0")")
 make_chroot cross trixie
 in_chroot cross dpkg --add-architecture "$1"
 apt_in_chroot cross rustc-web cargo-web "libstd-rust-web-dev:$1" "g++-$tools" g++ libc6-dev \
-    qemu-user "libccd-dev:$1" libccd-dev ca-certificates cmake make pkg-config
+    qemu-user "libccd-dev:$1" libccd-dev libclang-dev ca-certificates cmake make pkg-config
 
 tree=$chroots/cross/tree
 rm -rf "$tree"
@@ -49,7 +49,8 @@ here() {
 }
 # answers WHERE: of every entry point to pairs of all categories, one digest a pair
 answers() {
-    "$1" run -p lab --bin campaigns -- determinism | grep '^pair ' | sort
+    "$1" run -p lab --bin campaigns -- determinism >"$lists/all" || failed=1
+    grep '^pair ' "$lists/all" | sort
 }
 
 # All are run, so that one failure does not hide another.
