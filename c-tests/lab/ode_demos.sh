@@ -4,7 +4,7 @@
 #
 # Runs ODE's own demos on Debian's libode without drawing (3 minutes): demo_convex, and ode_rows, which must end on this
 # library and stop at an assertion on libccd; and five demos on libccd's answers, one query in ten judged, of which this
-# library must have none wrong. Prints the figures.
+# library must have none wrong. Prints the figures, which differ from run to run: the demos do.
 #   ode_demos.sh           ODE's source is fetched by `apt-get source`
 #   ODE_SOURCE=DIR ode_demos.sh   it is there, ODE 0.16
 
