@@ -382,8 +382,8 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
 const AREA_WEIGHT: f64 = 16.0 * f64::EPSILON;
 
 /// Returns the index of the corner to be replaced by `w`, a point beyond the portal, so that the ray crosses the new
-/// portal. Unlike [`Portal::replace_corner`] it decides by more than signs, which are rounding for rays close to an edge of D and for
-/// small portals.
+/// portal. Unlike [`Portal::replace_corner`] it decides by more than signs, which are rounding for rays close to an edge of D
+/// and for small portals.
 pub fn choose_corner(corners: [Vec3; 3], ray: &Vec3, w: &Vec3) -> usize {
     // From w, because differences lose no digits.
     let corners = corners.map(|v| v - w);

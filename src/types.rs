@@ -165,8 +165,8 @@ pub struct Penetration {
     /// Contact position, [`Settings::pos`]: the center of pressure, an estimate of the centroid of the
     /// overlap volume, projected along `normal` to the plane midway between the two support planes; the
     /// deeper the overlap, the nearer it is instead to a point between the centers, beside that plane.
-    /// If `status` is not converged, and in [`penetration_along`](crate::penetration_along) and [`penetration_planar`](crate::penetration_planar), the middle of the witness
-    /// points.
+    /// If `status` is not converged, and in [`penetration_along`](crate::penetration_along) and
+    /// [`penetration_planar`](crate::penetration_planar), the middle of the witness points.
     pub pos: [Real; 3],
     /// Witness point of the first shape, [`Settings::points`]: in the shape and on its support plane,
     /// within the larger of the error of the depth and 1e-12 of the size (1e-5 in single precision).

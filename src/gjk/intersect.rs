@@ -121,9 +121,9 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
 
 /// Proves that D contains the origin by more than the contact epsilon (see the limitation at the head): moves a simplex
 /// towards the origin until the simplex contains it, with the known vertices of the set first, and with queries where these do
-/// not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`: unit, the first search direction. `is_planar`:
-/// D lies in a plane, and a triangle or a segment that contains the origin suffices. A full set is compacted:
-/// indices change.
+/// not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`: unit, the
+/// first search direction. `is_planar`: D lies in a plane, and a triangle or a segment that contains the origin suffices. A
+/// full set is compacted: indices change.
 ///
 /// # Errors
 /// As [`intersect`].
