@@ -157,12 +157,12 @@ pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) 
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
 
-/// What the discovery does if v1 is near the ray.
+/// Directions that the discovery evaluates if v1 is near the ray.
 #[derive(Clone, Copy)]
 pub enum NearRay<'a> {
-    /// Evaluates a [`ring`] around this unit axis with the tangent `tilt`, which the ray need not cross.
+    /// A [`ring`] around this unit axis with the tangent `tilt`; the ray need not cross the portal.
     Ring { axis: &'a Vec3, tilt: f64 },
-    /// Evaluates directions perpendicular to the ray: the ray must cross the portal, whose edges may be as short as the
+    /// Perpendicular to the ray: the ray must cross the portal, whose edges may be as short as the
     /// tolerance.
     Perpendicular,
 }

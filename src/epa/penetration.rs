@@ -97,7 +97,7 @@ struct Proof {
     is_inconsistent: bool,
 }
 
-/// What is known before a polytope is made.
+/// Result of the steps before a polytope is made.
 enum Outcome {
     /// The minimum is proven.
     Proven(Proof),
