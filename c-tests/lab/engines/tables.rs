@@ -49,7 +49,7 @@ const FCL_USES: [FclUse; 6] = [
     ("touching", "contacts of touching bodies", CONVEX, 100, 120, 1000),
     ("through", "contacts of bodies that drift through each other", CONVEX, 150, 120, 1000),
     ("random", "contacts in random poses", CONVEX, 100, 120, 1000),
-    ("random", "one contact in random poses", CONCAVE, 50, 60, 1),
+    ("random", "one contact in random poses", CONCAVE, 200, 60, 1),
     ("random", "up to 100 contacts in random poses", CONCAVE, 30, 40, 100),
 ];
 
