@@ -14,8 +14,8 @@
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
 //! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, where a support point replaces a center near the
-//!    origin; if the polytope does not come to contain the origin, or rounding ends it, from two
-//!    tetrahedra of GJK. Full buffers are replaced by larger ones.
+//!    origin; if the polytope does not come to contain the origin, or rounding ends it, from a
+//!    tetrahedron of GJK, then from one of four wide directions. Full buffers are replaced by larger ones.
 //! 6. *Direction*: up to four more directions where the bounds differ by more than the tolerance ([`crate::epa::direction`]).
 //! 7. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
@@ -344,8 +344,9 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     }
 
     /// Expands polytopes from up to three starts, until one contains the origin and is not ended by rounding: the
-    /// tetrahedron of interior point and portal, and those of GJK from both sides. Measured (`campaigns -- wide`, per
-    /// 100,000 queries): without the second start 95, without both 450 proofs end by rounding, at tolerance 0.
+    /// tetrahedron of interior point and portal, that of GJK, and that of four wide directions. Measured (`judged hard 2000
+    /// 18`, seeds 11 to 14): with GJK's from the other side in place of the last 3 of 8,000 nearly coincident pairs end
+    /// up to 63 % too deep, because the same flat tetrahedron is found.
     #[inline(never)]
     fn expand_from(
         &mut self,
@@ -364,7 +365,10 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
                 (0, None) => continue,
                 (0, Some(Portal { corners: [a, b, c] })) => [self.find_apex(set)?, *a, *b, *c],
                 (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
-                _ => self.find_gjk_tetrahedron(set, &dir)?,
+                _ => match self.find_wide_tetrahedron(set, &dir)? {
+                    Some(start) => start,
+                    None => break,
+                },
             };
             let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
             let (found, status) = match self.expand_small(set, &mut polytope, &start)? {
@@ -505,6 +509,20 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             let pair = VertexSet::<N>::pair_of_entry(set.push(&Vec3::zeros(), &point));
             Vertex { w: point.v, pair }
         }))
+    }
+
+    /// Returns the tetrahedron of the support points along unit `dir` and of a wide ring around the opposite direction; `None`
+    /// if those of the ring are nearly on a line.
+    #[cold]
+    #[inline(never)]
+    fn find_wide_tetrahedron<const N: usize>(
+        &mut self,
+        set: &mut VertexSet<N>,
+        dir: &Vec3,
+    ) -> Result<Option<[Vertex; 4]>, Stop> {
+        let apex = self.query.evaluate(set, dir)?.vertex();
+        let base = ring(self.query, set, &-dir, WIDEST_RING_TAN)?;
+        Ok(base.map(|Portal { corners: [a, b, c] }| [apex, a, b, c]))
     }
 
     /// Returns the proof of an expansion that ended with `end`, and its status: [`Status::Rounding`] if the polytope does
