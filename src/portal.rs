@@ -21,8 +21,8 @@
 //! portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] around the ray
 //! and no discovery.
 //!
-//! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
-//! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
+//! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full. The caller needs another start, such
+//! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
 //! direction is a separating axis; this is the separation test.
 
 use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};

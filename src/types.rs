@@ -69,8 +69,8 @@ pub enum Status {
 }
 
 impl Status {
-    /// Returns the status of a search that ended early, with `iterations` left of `max_iterations`, of which the
-    /// library allows `cap`.
+    /// Returns the status of a search that ended early, with `iterations_left` of `max_iterations`, of which the library
+    /// allows `cap`.
     pub(crate) fn of_early_end(iterations_left: u64, max_iterations: u64, cap: u64) -> Self {
         match (iterations_left, max_iterations < cap) {
             (0, true) => Status::IterationLimit,

@@ -44,7 +44,7 @@ const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
 #[derive(Clone, Copy, Default)]
 struct Corner {
     at: Vec3,
-    /// The same without the common drop, at the end of the overlap ([`in_overlap`]).
+    /// The same in the overlap ([`in_overlap`]).
     inside: Vec3,
     /// The first and the last direction, counterclockwise, that returned the corner.
     first: Vec2,
@@ -62,6 +62,7 @@ struct Found {
     corners: FixedVec<Corner, MAX_POLYGON_CORNERS>,
     /// The drop that all corners have in common.
     common: f64,
+    /// The overlap of the polygon with a plane.
     own: Overlap,
 }
 

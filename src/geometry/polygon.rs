@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Convex polygons in a contact frame. x and y of a corner are its coordinates along the axes; z is its *drop*, the
-//! distance below the support plane, metres. Segments and points are polygons of two corners and of one.
+//! Convex polygons in a contact frame. x and y of a corner are its coordinates along the axes, metres; z is its *drop*, the
+//! distance below the support plane: in metres for a contact manifold, in depths for a contact position. Segments and
+//! points are polygons of two corners and of one.
 
 use crate::geometry::fixed_vec::FixedVec;
 use crate::math::{Vec3, larger, lesser};

@@ -352,10 +352,10 @@ impl SphereFit {
 /// The exact fits of the local search, whose minimum a prediction may be: e = f, and the changes of direction and
 /// vertex are parallel, within rounding.
 impl SphereFit {
-    /// Returns whether two directions, as far apart as those that confirm a minimum ([`CONFIRM_RANGE_RAD`]), confirm the
-    /// center of each sphere, that of obj1's entry and that of obj2's entry in `pair`: the two estimates of a center differ
-    /// by at most `tolerance` metres. From one direction the tip of a drop fits a sphere, and from several nearby ones the
-    /// rim of a thin disc nearly does.
+    /// Returns whether two directions, at least as far apart as those that confirm a minimum ([`CONFIRM_RANGE_RAD`]),
+    /// confirm the center of each sphere, that of obj1's entry and that of obj2's entry in `pair`: the two estimates of a
+    /// center differ by at most `tolerance`, metres. From one direction the tip of a drop fits a sphere, and from several
+    /// nearby ones the rim of a thin disc nearly does.
     pub fn is_confirmed_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
