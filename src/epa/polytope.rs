@@ -134,7 +134,7 @@ impl<const F: usize> EpaPolytope<F> {
         key_error: 0.0,
     };
 
-    /// Returns a blank polytope for points of this size, metres. See the field `ulp`.
+    /// Returns a blank polytope whose `ulp`, that of this size in metres, is not zero: codegen, see README.
     #[inline(always)]
     pub fn blank(size: f64) -> Self {
         let mut blank = Self::BLANK;
@@ -404,15 +404,15 @@ impl<const F: usize> EpaPolytope<F> {
     #[cold]
     #[inline(never)]
     fn recompute_keys(&mut self, key: f64) -> bool {
-        let mut refresh_keys = false;
+        let mut is_closer = false;
         for f in 0..self.used.min(F) {
             let (square, _) = self.plane(f).signed_square();
             if self.keys[f] < f64::INFINITY && square < key {
                 self.keys[f] = Self::key(f, square * (1.0 - KEY_ERROR_REL));
-                refresh_keys = true;
+                is_closer = true;
             }
         }
-        refresh_keys
+        is_closer
     }
 
     /// Inserts the corner `new`. `first`: a face that it is above by more than `level`, metres. `corner` returns the point
