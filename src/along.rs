@@ -44,8 +44,10 @@ struct Ray<'r, 'q, A, B, const N: usize> {
     set: &'r mut VertexSet<N>,
     /// Unit.
     dir: Vec3,
+    /// The support plane with the least parameter so far: the upper bound.
     exit_plane: SupportPlane,
     settings: &'r Settings,
+    /// The number of support points after the discovery.
     iterations: u64,
 }
 
@@ -153,7 +155,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
         }
     }
 
-    /// Makes the exit plane the first of it and the planes of the entries from index `first` on.
+    /// Updates the exit plane: of it and the planes of the entries from index `first` on, takes the one with the least
+    /// parameter.
     fn note_planes(&mut self, first: usize) {
         for k in first..self.set.len() {
             let dir = self.set.dir(k);

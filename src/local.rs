@@ -57,8 +57,8 @@ use crate::trace;
 use crate::types::{Settings, Solution, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
-/// minimum, the longest that ends with one takes 45; with 48 2 % of coincident centers end so at fine tolerances. A power of
-/// two: the index into a set of 60 takes 1 to 2 % more instructions.
+/// minimum, the longest that ends with one takes 45; with 48, 2 % of coincident centers end so at fine tolerances. A power
+/// of two: the index into a set of 60 takes 1 to 2 % more instructions.
 pub const MAX_WALK_POINTS: usize = 64;
 /// The difference of two depths, in tolerances, up to which they are equal. The rest of the tolerance is left for the error of
 /// the witness points.
@@ -123,9 +123,9 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     iterations: u64,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. The set
-/// may have entries. Any status but [`Status::Converged`] comes with the upper bound and the vertices of its support
-/// point.
+/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. `is_general`:
+/// true if `start` is in general position. The set may have entries. Any status but [`Status::Converged`] comes with the
+/// upper bound and the vertices of its support point.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -216,11 +216,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         Ok(self.upper_bound(Status::Rounding))
     }
 
+    /// Returns the effective tolerance, metres.
     fn tolerance(&self) -> f64 {
         self.query.scale.tolerance(self.settings.tolerance)
     }
 
-    /// Returns why no further direction may be evaluated.
+    /// Returns why no further direction may be evaluated; `None` if one may.
     fn limit(&self) -> Option<Status> {
         if self.iterations >= self.settings.max_iterations {
             return Some(Status::IterationLimit);

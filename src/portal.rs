@@ -43,13 +43,13 @@ pub const MAX_STEPS: u32 = 100;
 /// regular tetrahedron (2.83), the position of a cylinder that slides on a plate jumps (test `continuity`).
 pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 
-/// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum and is refined after the
-/// origin is on its inner side. Measured: if every portal is refined so, deep overlaps take 4 to 13 % more instructions; with
-/// 0.15 boxes at medium depth take 11 % more, and spheres 8 % more support points.
+/// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum, and is refined further
+/// once the origin is on its inner side. Measured: if every portal is refined so, deep overlaps take 4 to 13 % more
+/// instructions; with 0.15, boxes at medium depth take 11 % more, and spheres 8 % more support points.
 const SHALLOW_REL: f64 = 0.25;
 /// The number of tilts in discovery that may find no point on the other side of the ray before the perpendicular direction is
-/// evaluated. Measured: with 3 support points and instructions differ by less than 0.1 %, and rays out of boxes and cylinders
-/// take 3 % fewer support points.
+/// evaluated. Measured: with 3, support points and instructions differ by less than 0.1 %, and rays out of boxes and
+/// cylinders take 3 % fewer support points.
 const MAX_TILTS: u32 = 5;
 /// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
 /// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more

@@ -41,6 +41,7 @@ use core::mem::swap;
 
 /// Limit on the queries of one object: eight corners, each found twice, and the size.
 const MAX_QUERIES: u32 = 24;
+
 /// Finds both faces, cached or anew. Returns them with the effective slop: the larger of the caller's and the least
 /// slop for the depth.
 ///

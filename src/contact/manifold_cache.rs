@@ -23,7 +23,7 @@ use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger};
 use nalgebra::UnitComplex;
 
-/// Contacts whose ids are stored.
+/// The number of contacts whose ids are stored.
 const MAX_IDS: usize = 8;
 /// Error of the vertices, which are stored as `f32`, relative to the size of the face.
 const F32_REL_TOL: f64 = 4.0 * f32::EPSILON as f64;

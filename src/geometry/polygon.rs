@@ -156,7 +156,7 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
     }
 
     /// Returns the indices of at most `most` corners, `first` and then the others in their order, which span the
-    /// largest area; of two corners, the longest distance. (Indices count on beyond the length.)
+    /// largest area; of two corners, the longest distance. Indices beyond the length are for [`FixedVec::cyclic`].
     ///
     /// Dynamic programming: the largest fan of triangles about `first` that ends at a corner consists of the
     /// largest fan that ends at an earlier corner and one triangle.

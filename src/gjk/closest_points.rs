@@ -32,8 +32,8 @@ use crate::trace;
 use crate::types::Status;
 
 /// The largest tangent of the angle from the normal of the best plane to a direction that is evaluated. Measured: without a
-/// limit distances take 4 to 12 % more support points; with 1.0 two of 2,100 exactly touching pairs take 882 of them (campaign
-/// `wide`, seed 4242).
+/// limit, distances take 4 to 12 % more support points; with 1.0, two of 2,100 exactly touching pairs take 882 of them
+/// (campaign `wide`, seed 4242).
 const MAX_EXTRAPOLATION_TAN: f64 = 0.6;
 
 /// Stop criterion of the bounds.
@@ -60,7 +60,9 @@ pub struct ClosestPoints {
     pub is_general: bool,
     /// The distance of the points, metres.
     pub upper: f64,
+    /// The closest point of obj1.
     pub point1: Vec3,
+    /// The closest point of obj2.
     pub point2: Vec3,
     /// Number of support points.
     pub iterations: u64,
@@ -70,7 +72,8 @@ pub struct ClosestPoints {
     pub is_inside: bool,
 }
 
-/// Finds the closest points. Starts along unit `start`; `fit` may hold the sphere radii of the last query.
+/// Finds the closest points. Starts along unit `start`. `fit`: may hold the sphere radii of the last query. `is_general`:
+/// true if `start` is in general position.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -150,7 +153,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
-        // The last query was made towards the origin; the last direction towards it was limited.
+        // Whether the last evaluation was towards the origin; whether the last direction towards it was limited.
         let (mut is_step, mut was_limited) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_STEPS {

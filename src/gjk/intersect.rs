@@ -39,10 +39,10 @@ use crate::trace;
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
 /// The least distance of an interior point from the ends of its segment, relative to the segment's length. Measured: with
-/// 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
+/// 0.05, separated pairs take 7 % more support points; with 0.5, 10 %.
 const MIN_END_FRACTION: f64 = 0.25;
 /// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
-/// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided; with 0.25 6 of 15
+/// 0.48; with 0.5, the origin is on an edge of the tetrahedron more often, and the case stays undecided; with 0.25, 6 of 15
 /// million touches of turned hulls count as hits.
 const GENERIC_FRACTION: f64 = 0.44;
 
@@ -75,8 +75,9 @@ impl Enclosing {
     }
 }
 
-/// Tests whether the objects intersect. Starts along unit `first`. `center`: the difference of trusted
-/// centers. Returns the direction of the upper bound, in which the next query of the pair can start.
+/// Tests whether the objects intersect. Starts along unit `first`. `center`: the difference of trusted centers.
+/// `is_general`: true if `first` is in general position. Returns the direction of the upper bound, in which the next query
+/// of the pair can start.
 ///
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
@@ -119,11 +120,11 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     contains_origin(query, &mut set, center, &dir, false).map(|_| ())
 }
 
-/// Proves that D contains the origin by more than the contact epsilon (see the limitation at the head): moves a simplex
-/// towards the origin until the simplex contains it, with the known vertices of the set first, and with queries where these do
-/// not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`: unit, the
-/// first search direction. `is_planar`: D lies in a plane, and a triangle or a segment that contains the origin suffices. A
-/// full set is compacted: indices change.
+/// Proves that D contains the origin by more than the contact epsilon (undecided cases: see the head): moves a simplex
+/// towards the origin until the simplex contains it, with the known vertices of the set first, and with support calls where
+/// these do not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`:
+/// unit, the first search direction. `is_planar`: D lies in a plane, and a triangle or a segment that contains the origin
+/// suffices. A full set is compacted: indices change.
 ///
 /// # Errors
 /// As [`intersect`].

@@ -86,6 +86,7 @@ impl<const N: usize> VertexSet<N> {
     };
     /// The low bits of a dot product that are replaced by the index of its vertex.
     const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
+    /// The bits of a dot product that a tag replaces.
     const TAG_MASK: u64 = Self::INDEX_MASK | Self::INDEX_MARK;
     /// The bit above the index, which is always set, so that no tagged product is ±0: codegen, see README.
     const INDEX_MARK: u64 = N.next_power_of_two() as u64;

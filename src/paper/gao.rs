@@ -48,8 +48,8 @@ const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 
 /// Finds a local minimum of the penetration depth from the unit direction `start`: Algorithm 3, or with
 /// [`Until::Shortcut`] Algorithms 4 and 5. `plane_normal`: for a D that lies in a plane, the unit normal of that plane;
-/// the search then starts along the component of `start`, in general position, in the plane. `on_new_ray` is called with |z| whenever the ray
-/// changes, for tests.
+/// the search then starts along the component of `start`, in general position, in the plane. `on_new_ray` is called with |z|
+/// whenever the ray changes, for tests.
 ///
 /// # Errors
 /// `Stop::Separated`; `Stop::Fault` for a point that is not finite.
