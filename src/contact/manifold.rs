@@ -107,7 +107,7 @@ fn reduced(
                 indices.iter().map(|i| *region.cyclic(*i)).collect();
             match &*corners {
                 [a, b] => offset(a, b).norm(),
-                _ => corners.area(),
+                _ => corners.double_area(),
             }
         };
         if kept.len() == best.len() && size(&kept) >= 0.9 * size(&best) {
@@ -124,7 +124,7 @@ fn overlap_of_faces(
     two: &ContactFace,
 ) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
     let coord_eps = larger(one.coord_eps, two.coord_eps);
-    let is_swapped = one.corners.area() > two.corners.area();
+    let is_swapped = one.corners.double_area() > two.corners.double_area();
     let [small, large] = if is_swapped { [two, one] } else { [one, two] };
     let mut region = Polygon::default();
     if large.corners.len() > 2 {
