@@ -125,7 +125,7 @@ impl<const N: usize> VertexSet<N> {
 
     /// Replaces the entry with index `i`.
     #[inline(always)]
-    pub fn set(&mut self, i: usize, dir: &Vec3, point: &SupportPoint) {
+    fn set(&mut self, i: usize, dir: &Vec3, point: &SupportPoint) {
         let i = Self::in_range(i);
         for (k, coords) in self.coords.iter_mut().enumerate() {
             coords[i] = [point.v1[k], -point.v2[k]];
