@@ -132,16 +132,16 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
                 let floor = search.tolerance.max(rounding(plane.point.magnitude()));
                 // |q| − |z|. A gap that is NaN or infinite (a plane parallel to the ray) is not
                 // stationary.
-                let stationary = plane.depth / along - plane.depth <= floor;
-                let lower_elsewhere = search.best.depth < plane.depth - floor;
-                if stationary && !lower_elsewhere {
+                let is_stationary = plane.depth / along - plane.depth <= floor;
+                let is_lower = search.best.depth < plane.depth - floor;
+                if is_stationary && !is_lower {
                     let hit = match &perturbed_from {
                         Some(first) if first.depth <= plane.depth => make_result(first, None),
                         _ => make_result(&plane, Some(&last)),
                     };
                     return Ok(Some(hit));
                 }
-                if lower_elsewhere { search.best } else { plane }
+                if is_lower { search.best } else { plane }
             }
         };
         if !search.take_iteration() {
