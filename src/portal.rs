@@ -90,7 +90,7 @@ pub struct PortalPlane {
 impl PortalPlane {
     /// Returns whether `w` is above the plane by more than `level`, metres; `false` for NaN.
     #[inline(always)]
-    pub fn is_below(&self, w: &Vec3, level: f64) -> bool {
+    pub fn is_exceeded_by(&self, w: &Vec3, level: f64) -> bool {
         self.normal.dot(w) - self.offset > level * self.length
     }
 }
@@ -435,7 +435,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
         let mut w = set.farthest_vertex(&normal);
-        if !plane.is_below(&w.w, INSERT_HEIGHT_GAPS * gap) {
+        if !plane.is_exceeded_by(&w.w, INSERT_HEIGHT_GAPS * gap) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }
@@ -444,7 +444,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             let (sample, source) =
                 evaluate_beyond(query, set, fit, corners, &normal, gap, is_along_normal)?;
             w = sample.vertex();
-            if !plane.is_below(&w.w, query.scale.height_eps()) {
+            if !plane.is_exceeded_by(&w.w, query.scale.height_eps()) {
                 if source == DirectionSource::Normal {
                     return Ok(());
                 }
