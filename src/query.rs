@@ -229,12 +229,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         first.unwrap_or(Vec3::x())
     }
 
-    /// Proves the overlap of a solver's `hit`, with the known vertices of `set` first, and queries if needed. If
+    /// Proves the overlap of a solver's `hit`, with the known vertices of `set` first, and support calls if needed. If
     /// the depth is at most the tolerance and the witness points, moved by it, do not coincide, replaces them by
     /// two coincident points of the objects. `is_planar`: D lies in a plane.
     ///
     /// # Errors
-    /// [`Stop::Separated`]: a queried direction separates. [`Fault::NonFinite`].
+    /// [`Stop::Separated`]: an evaluated direction separates. [`Fault::NonFinite`].
     #[inline(never)]
     fn prove_overlap(
         &self,

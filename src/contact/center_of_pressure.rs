@@ -506,7 +506,7 @@ mod tests {
     }
 
     /// Tests a box that leans by less than its depth over its width: the position is the centroid of the wedge, the
-    /// same whatever is known; four corners and four sides are queried, of the floor nothing if its corners are known.
+    /// same whatever is known; four corners and four sides are evaluated, of the floor nothing if its corners are known.
     #[test]
     fn known_vertices_save_queries_and_move_nothing() {
         let half = Vec3::new(0.125, 0.125, 0.1);

@@ -84,7 +84,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
             own: Overlap::EMPTY,
         };
         for out in four_directions(Vec2::x()) {
-            let at = self.query(object, out)?;
+            let at = self.evaluate(object, out)?;
             found.add_first(at, out, self.vertex_offset);
             if let Some(limit) = &mut limit {
                 if limit.add(&at) && limit.is_plane() {
@@ -121,7 +121,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
                     continue;
                 }
                 let out = p.out;
-                let at = self.query(object, out)?;
+                let at = self.evaluate(object, out)?;
                 let level = larger(self.height(&p.at, &out), self.height(&q.at, &out));
                 let inside = in_overlap(&at, found.common);
                 let volume = volume_beyond(&p.inside, &inside, &q.inside);

@@ -8,10 +8,10 @@
 //!    is a lower one for every unit n.
 //! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is closer
 //!    to the origin than the simplex.
-//! 3. Query the direction from the simplex to the origin, or the direction in which the sphere fits
+//! 3. Evaluate the direction from the simplex to the origin, or the direction in which the sphere fits
 //!    ([`SphereFit`]) predict the support plane closest to the origin; the prediction is exact at once for
 //!    polytopes rounded by a sphere.
-//! 4. The queried direction is limited to [`MAX_EXTRAPOLATION_TAN`] from the normal of the best plane found so far: a
+//! 4. The evaluated direction is limited to [`MAX_EXTRAPOLATION_TAN`] from the normal of the best plane found so far: a
 //!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
 //! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the
 //!    distance is proven to be larger than `max_distance`.
@@ -124,7 +124,7 @@ struct ClosestPointsSearch<'s, 'q, A, B> {
     to_origin: Vec3,
     /// The distance of the simplex, metres.
     upper: f64,
-    /// True if the last query was a prediction; the next query is then none. With a radius that is far too large,
+    /// True if the last direction was a prediction; the next one is then none. With a radius that is far too large,
     /// e.g. of a foreign state, each prediction is confirmed but turns the plane by very little.
     was_prediction: bool,
     /// True if the simplex contains the origin.
@@ -175,7 +175,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
                 return Ok(Status::Rounding);
             };
-            is_step = !self.query_prediction(&dir, self.gap(goal))?;
+            is_step = !self.evaluate_prediction(&dir, self.gap(goal))?;
             if !is_step {
                 continue;
             }
@@ -236,9 +236,9 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         unit(&(best + perpendicular * (MAX_EXTRAPOLATION_TAN / length)))
     }
 
-    /// Queries the direction in which the sphere fits predict the closest support plane. Returns whether there
+    /// Evaluates the direction in which the sphere fits predict the closest support plane. Returns whether there
     /// was a useful prediction. `dir`: unit direction from the simplex to the origin.
-    fn query_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
+    fn evaluate_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
             compact(&mut self.set, self.simplex.slots());
             self.fit.restart();

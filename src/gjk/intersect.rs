@@ -4,7 +4,7 @@
 //! The intersection test, and the proof that D contains the origin: by a portal from an interior point
 //! (G. Snethen, "XenoCollide", Game Programming Gems 7), else by GJK ([`Simplex`]).
 //!
-//! 1. Query the first direction: most separated pairs end here.
+//! 1. Evaluate the first direction: most separated pairs end here.
 //! 2. The interior point is the difference of the centers; without centers, a point on the segment between
 //!    two opposite support points. Find a portal of its origin ray, and move the portal outwards until the
 //!    origin is on its inner side ([`crate::portal`]).
@@ -14,7 +14,7 @@
 //!    as in stacks of aligned boxes), the case is resolved by a portal from an interior point.
 //!
 //! Departures. If a known difference is beyond the origin, the direction does not separate and is not
-//! queried. The simplex starts from the difference of the centers if it is given. Objects that touch within the contact
+//! evaluated. The simplex starts from the difference of the centers if it is given. Objects that touch within the contact
 //! epsilon do not intersect: the origin must be inside D by more. So flat Minkowski differences (both objects
 //! in one plane) do not intersect, except with `is_planar`. A point between two support points may be on the
 //! surface of D, and the origin with it: then a portal proves an overlap only if D has points on the outer side of
@@ -22,7 +22,7 @@
 //!
 //! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or the support value of n is at most the contact
 //! epsilon. `Ok`: D contains the origin, or (undecided) the origin is within rounding of the surface of a simplex
-//! and no queried direction separates. Measured (`touches` of c-tests/tests/contract): of 2 million touches 5 are
+//! and no evaluated direction separates. Measured (`touches` of c-tests/tests/contract): of 2 million touches 5 are
 //! undecided, objects that were turned and whose D has the origin on an edge.
 
 use crate::geometry::barycentric;
@@ -158,7 +158,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
         let was_triangle = simplex.len() == 3;
         let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
             if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
-                // The origin is in the plane of the old face within rounding: query the other side of D.
+                // The origin is in the plane of the old face within rounding: evaluate the other side of D.
                 make_room(set, simplex.slots());
                 query.evaluate(set, &-dir)?;
             }
@@ -192,7 +192,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns a point of D, in its interior or on its surface: on the segment from `from` to the support point along
-/// unit `dir`, as close to the origin as [`MIN_END_FRACTION`] allows. Queries `dir`, and the direction from the
+/// unit `dir`, as close to the origin as [`MIN_END_FRACTION`] allows. Evaluates `dir`, and the direction from the
 /// point to the origin.
 #[inline(never)]
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
@@ -273,7 +273,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns whether D extends beyond the faces between a portal and `inner`, so that an origin on one of them is
-/// inside D. Queries the normal of that face if no known difference is beyond it. Returns `false` if the origin is on
+/// inside D. Evaluates the normal of that face if no known difference is beyond it. Returns `false` if the origin is on
 /// two faces, that is, on an edge.
 ///
 /// # Errors
@@ -308,7 +308,7 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
 
 /// Resolves the case of an origin on the surface of a simplex within rounding, by a portal from a point
 /// between the simplex and the opposite side of D: that point is well inside D however flat the simplex is.
-/// Returns the corners of the simplex if no portal is found; no queried direction separates then, and D is not flat.
+/// Returns the corners of the simplex if no portal is found; no evaluated direction separates then, and D is not flat.
 #[cold]
 #[inline(never)]
 fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
