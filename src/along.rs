@@ -19,8 +19,8 @@
 //! A tilt moves the parameter of a plane that is nearly parallel to the ray by more, so normals of the portal are tilted
 //! by less the larger their angle to the ray. The ray itself keeps the caller's direction.
 //!
-//! Outputs. [`Status::Converged`]: the bounds differ by at most the tolerance, along the ray. Any other status: they
-//! are valid. The overlap is not proven here.
+//! Outputs. The bounds are valid for any status if the origin is in D, which is not proven here. [`Status::Converged`]: they
+//! differ by at most the tolerance, along the ray.
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::geometry::barycentric;

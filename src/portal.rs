@@ -17,15 +17,15 @@
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
 //! so that the portal of a shallow contact is small and close to the minimum. If v1 is near the ray, the portal is a
-//! *ring*: the support points of three directions around that of the upper bound. A caller whose ray must cross the
-//! portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] around the ray
-//! and no discovery.
+//! *ring*: the support points of three directions around one that the caller chooses ([`NearRay`]). A caller whose ray
+//! must cross the portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`]
+//! around the ray and no discovery.
 //!
 //! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full. The caller needs another start, such
 //! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
 //! direction is a separating axis; this is the separation test.
 
-use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
+use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};

@@ -9,7 +9,7 @@
 /// width. Measured: with 1.8 the position of a rolling cylinder jumps by 7 mm and the error of rounded boxes is 1.5 mm in
 /// place of 0.9 mm.
 pub const TILT_FACTOR: f64 = 1.4;
-/// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 52, and the first directions of a face have it. With
+/// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 31, and the first directions of a face have it. With
 /// a larger one surfaces beside a face are taken for it; a smaller one underestimates the size of curved objects.
 pub const MAX_TILT_TAN: f64 = 0.25;
 /// Largest estimated shift of the centroid by a corner that is not searched, relative to the extent. Real shifts are a third

@@ -6,8 +6,8 @@
 //!
 //! 1. The closest point of the simplex is an upper bound of the distance; −h(n), h being the support function of D,
 //!    is a lower one for every unit n.
-//! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is closer
-//!    to the origin than the simplex.
+//! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is farther
+//!    towards the origin than the simplex.
 //! 3. Evaluate the direction from the simplex to the origin, or the direction in which the sphere fits
 //!    ([`SphereFit`]) predict the support plane closest to the origin; the prediction is exact at once for
 //!    polytopes rounded by a sphere.

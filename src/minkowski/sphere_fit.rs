@@ -758,7 +758,7 @@ mod tests {
         let (tilted, _) = fit
             .tilted_from_lowest(&set, &near, &upper, &n, gap)
             .unwrap();
-        // The first ring is as wide as the gap allows.
+        // The first circle is as wide as the gap allows.
         let first = 2.0 * (gap / 0.75).sqrt();
         assert!((tilted.y / tilted.x - first).abs() < 1e-6, "{tilted}");
     }
