@@ -42,7 +42,7 @@ use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
-use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
@@ -446,8 +446,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if let Model::Smooth(flattest) = model {
             return self.is_lowest(&n, &[*flattest, -flattest], None, tolerance);
         }
-        let e1 = perpendicular(&n);
-        let e2 = n.cross(&e1) * 0.75_f64.sqrt();
+        let [e1, e2] = tangents(&n);
+        let e2 = e2 * 0.75_f64.sqrt();
         let ring = [e1, e2 - e1 * 0.5, -e2 - e1 * 0.5];
         // The largest distance of two estimates of a sphere's center.
         let center_tolerance = tolerance + self.query.scale.height_eps();

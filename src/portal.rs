@@ -358,8 +358,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     tilt: f64,
 ) -> Result<Option<Portal>, Stop> {
     trace::stage("ring");
-    let e1 = perpendicular(axis);
-    let e2 = axis.cross(&e1);
+    let [e1, e2] = tangents(axis);
     let half = 0.75_f64.sqrt();
     // Also for NaN.
     let tilt = lesser(tilt, WIDEST_RING_TAN);

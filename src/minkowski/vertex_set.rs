@@ -10,7 +10,7 @@
 //! A full set does not grow: [`VertexSet::push`] replaces the last entry. A caller that needs all of its
 //! entries tests [`VertexSet::is_full`] first.
 
-use crate::math::{Vec3, ZERO, larger};
+use crate::math::{Vec3, ZERO, index_below, larger};
 use crate::minkowski::support::SupportPoint;
 
 /// A known difference: the index of obj1's vertex and of obj2's.
@@ -91,15 +91,11 @@ impl<const N: usize> VertexSet<N> {
     /// The bit above the index, which is always set, so that no tagged product is ±0: codegen, see README.
     const INDEX_MARK: u64 = N.next_power_of_two() as u64;
 
-    /// Returns an index that is in range for any `i`, so that no access is checked.
+    /// Returns an index that is in range for any `i`.
     #[inline(always)]
     fn in_range(i: usize) -> usize {
         const { assert!(N > 0 && N <= NO_INDEX as usize) };
-        if N.is_power_of_two() {
-            i & (N - 1)
-        } else {
-            i.min(N - 1)
-        }
+        index_below(N, i)
     }
 
     /// Returns the number of entries.

@@ -32,7 +32,7 @@
 //! method on support calls only; the local search of this library, on known vertices, is [`crate::local`].
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
-use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
+use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, tangents, unit};
 use crate::minkowski::general_position::{tilt_rad, tilted_in_plane};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
@@ -110,8 +110,8 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
                     let perturbation = match search.plane_normal {
                         Some(m) => m.cross(&ray.dir) * PERTURBATION_TAN.0,
                         None => {
-                            let e1 = perpendicular(&ray.dir);
-                            e1 * PERTURBATION_TAN.0 + ray.dir.cross(&e1) * PERTURBATION_TAN.1
+                            let [e1, e2] = tangents(&ray.dir);
+                            e1 * PERTURBATION_TAN.0 + e2 * PERTURBATION_TAN.1
                         }
                     };
                     let n = ray.dir + perturbation;
