@@ -32,7 +32,7 @@
 //!
 //! Exact callbacks take the same support points with and without (mean of `support_counts.csv`).
 //!
-//! The published method ([`crate::paper::gao`]) evaluates its directions as they are, but for those of a planar query,
+//! The published method ([`crate::paper::gao`]) evaluates its directions as they are, except those of a planar query,
 //! which are tilted within the plane. In single precision the error of such a callback is too large for any tilt, and
 //! nothing is tilted.
 
