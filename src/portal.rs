@@ -90,7 +90,7 @@ pub struct PortalPlane {
 impl PortalPlane {
     /// Returns whether `w` is above the plane by more than `level`, metres; `false` for NaN.
     #[inline(always)]
-    pub fn is_exceeded_by(&self, w: &Vec3, level: f64) -> bool {
+    fn is_exceeded_by(&self, w: &Vec3, level: f64) -> bool {
         self.normal.dot(w) - self.offset > level * self.length
     }
 }

@@ -17,7 +17,7 @@ pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
 
 /// Returns a vertex moved along unit `out` and raised by a drop.
 #[inline(always)]
-pub fn moved(v: &Vec3, out: Vec2, distance: f64, raised: f64) -> Vec3 {
+fn moved(v: &Vec3, out: Vec2, distance: f64, raised: f64) -> Vec3 {
     Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z - raised)
 }
 

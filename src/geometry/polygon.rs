@@ -35,7 +35,7 @@ pub type Polygon<const CAPACITY: usize> = FixedVec<Vec3, CAPACITY>;
 
 impl<const CAPACITY: usize> Polygon<CAPACITY> {
     /// Returns the sides, from corner to corner; a point has one side of length 0.
-    pub fn sides(&self) -> impl Iterator<Item = (Vec3, Vec3)> + Clone + '_ {
+    fn sides(&self) -> impl Iterator<Item = (Vec3, Vec3)> + Clone + '_ {
         (0..self.len()).map(|i| (*self.cyclic(i), *self.cyclic(i + 1)))
     }
 
