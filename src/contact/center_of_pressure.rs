@@ -56,7 +56,7 @@ use crate::minkowski::vertex_set::VertexSet;
 use crate::types::Solution;
 
 /// Returns the contact position of a hit: the center of pressure of a shallow one, the deep position of a deep one, and a
-/// mean of both between. `set`: the known vertices of the search.
+/// mean of both between. `set`: the known vertices of the search. `tolerance`: metres.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
