@@ -143,7 +143,7 @@ enum class Cause : int {
 
 /** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */
 enum Want : unsigned {
-    want_pos = CCD_WANT_POS,       /**< pos: costs 2 to 6 support points, at most 24 */
+    want_pos = CCD_WANT_POS,       /**< pos: costs support points, see CCD_WANT_POS */
     want_points = CCD_WANT_POINTS, /**< point1 and point2: cost nothing */
     want_all = CCD_WANT_ALL        /**< everything */
 };
