@@ -210,6 +210,7 @@ sh cmake/packages/source.sh OUT
 sh c-tests/lab/release.sh LOGS
 sh c-tests/lab/release.sh LOGS packaging packaging-single
 sh c-tests/lab/fcl_tests.sh
+sh c-tests/lab/libccd_tests.sh
 sh c-tests/lab/ode_demos.sh
 sh c-tests/setup.sh lab
 release.sh LOGS STEP...
