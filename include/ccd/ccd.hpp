@@ -125,8 +125,8 @@ struct Shape : ccd_shape_t {
 /** Result of a query. */
 enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
-    limit = CCD_LIMIT,         /**< overlap, less exact than requested; cause says why */
-    miss = CCD_MISS,           /**< apart */
+    limit = CCD_LIMIT,         /**< less exact than requested; cause says why. Overlap, undecided in signed_distance */
+    miss = CCD_MISS,           /**< apart, or touching within rounding */
     no_memory = CCD_NO_MEMORY, /**< an allocation failed */
     bad_input = CCD_BAD_INPUT  /**< an argument or a point is invalid, see CCD_BAD_INPUT */
 };
