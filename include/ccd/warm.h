@@ -166,9 +166,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Requests pos. Costs 2 to 6 support points on average, k + 1 for a face of k > 4 corners, of both
- * objects where neither's face contains the other's; at most 24. May call one support function
- * without the other.
+ * Requests pos. Costs, on average, up to 5 support points for a face of up to 4 corners on a larger
+ * one, k + 1 for k > 4 corners, 8 for a disc, 12 where neither face contains the other; at most 24.
+ * May call one support function without the other.
  */
 #define CCD_WANT_POS 1
 
@@ -213,8 +213,8 @@ typedef struct ccd_penetration_t {
    * most half the depth from both objects, within the tolerance. Root mean square error for objects
    * of a quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to
    * 10 corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
-   * round objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller
-   * object's size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
+   * round objects and discs, 15 mm for a cone on its side; for greater depths 2 % of the smaller
+   * object's radius at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
    * moves by at most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
    * ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
    */
@@ -331,7 +331,7 @@ typedef struct ccd_distance_t {
  * functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
  * a box). The signed distance is that of the cores minus both margins, exactly. `max_distance`:
  * metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
- * `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
+ * `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0; CCD_WANT_POS has no effect.
  *
  * Reads dist_tolerance. Allocates only if the cores overlap and their least depth is (nearly) not
  * unique, as for concentric spheres.
