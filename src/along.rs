@@ -19,8 +19,8 @@
 //! A tilt moves the parameter of a plane that is nearly parallel to the ray by more, so normals of the portal are tilted
 //! by less the larger their angle to the ray. The ray itself keeps the caller's direction.
 //!
-//! Outputs. [`Status::Converged`]: the bounds differ by at most the tolerance, along the ray. Any other status: they
-//! are valid. The overlap is not proven here.
+//! Outputs. The bounds are valid for any status if the origin is in D, which is not proven here. [`Status::Converged`]: they
+//! differ by at most the tolerance, along the ray.
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::geometry::barycentric;
@@ -44,8 +44,10 @@ struct Ray<'r, 'q, A, B, const N: usize> {
     set: &'r mut VertexSet<N>,
     /// Unit.
     dir: Vec3,
+    /// The support plane with the least parameter so far: the upper bound.
     exit_plane: SupportPlane,
     settings: &'r Settings,
+    /// The number of support points after the discovery.
     iterations: u64,
 }
 
@@ -153,7 +155,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
         }
     }
 
-    /// Makes the exit plane the first of it and the planes of the entries from index `first` on.
+    /// Updates the exit plane: of it and the planes of the entries from index `first` on, takes the one with the least
+    /// parameter.
     fn note_planes(&mut self, first: usize) {
         for k in first..self.set.len() {
             let dir = self.set.dir(k);

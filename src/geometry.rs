@@ -7,8 +7,8 @@
 //! |---|---|
 //! | [`barycentric`] | the closest point of a segment, a triangle or a tetrahedron |
 //! | [`plane`] | planes and tetrahedra with their rounding errors |
-//! | [`polygon`] | convex polygons in a plane: hull, clipping, reduction |
-//! | [`fixed_vec`] | a vector of at most N elements, without heap |
+//! | [`polygon`] | convex polygons in a plane: clipping, reduction |
+//! | [`fixed_vec`] | a list of at most N elements, without heap |
 
 pub mod barycentric;
 pub mod fixed_vec;

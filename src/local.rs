@@ -42,7 +42,7 @@ use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
-use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
@@ -57,8 +57,8 @@ use crate::trace;
 use crate::types::{Settings, Solution, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
-/// minimum, the longest that ends with one takes 45; with 48 2 % of coincident centers end so at fine tolerances. A power of
-/// two: the index into a set of 60 takes 1 to 2 % more instructions.
+/// minimum, the longest that ends with one takes 45; with 48, 2 % of coincident centers end so at fine tolerances. A power
+/// of two: the index into a set of 60 takes 1 to 2 % more instructions.
 pub const MAX_WALK_POINTS: usize = 64;
 /// The difference of two depths, in tolerances, up to which they are equal. The rest of the tolerance is left for the error of
 /// the witness points.
@@ -123,9 +123,9 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     iterations: u64,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. The set
-/// may have entries. Any status but [`Status::Converged`] comes with the upper bound and the vertices of its support
-/// point.
+/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. `is_general`:
+/// true if `start` is in general position. The set may have entries. Any status but [`Status::Converged`] comes with the
+/// upper bound and the vertices of its support point.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -216,11 +216,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         Ok(self.upper_bound(Status::Rounding))
     }
 
+    /// Returns the effective tolerance, metres.
     fn tolerance(&self) -> f64 {
         self.query.scale.tolerance(self.settings.tolerance)
     }
 
-    /// Returns why no further direction may be evaluated.
+    /// Returns why no further direction may be evaluated; `None` if one may.
     fn limit(&self) -> Option<Status> {
         if self.iterations >= self.settings.max_iterations {
             return Some(Status::IterationLimit);
@@ -445,8 +446,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if let Model::Smooth(flattest) = model {
             return self.is_lowest(&n, &[*flattest, -flattest], None, tolerance);
         }
-        let e1 = perpendicular(&n);
-        let e2 = n.cross(&e1) * 0.75_f64.sqrt();
+        let [e1, e2] = tangents(&n);
+        let e2 = e2 * 0.75_f64.sqrt();
         let ring = [e1, e2 - e1 * 0.5, -e2 - e1 * 0.5];
         // The largest distance of two estimates of a sphere's center.
         let center_tolerance = tolerance + self.query.scale.height_eps();

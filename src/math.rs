@@ -109,6 +109,23 @@ pub fn perpendicular(n: &Vec3) -> Vec3 {
     p / p.norm()
 }
 
+/// Returns two unit vectors perpendicular to unit `n` and to each other; the second is n × the first.
+#[inline(always)]
+pub fn tangents(n: &Vec3) -> [Vec3; 2] {
+    let e1 = perpendicular(n);
+    [e1, n.cross(&e1)]
+}
+
+/// Returns `i` if it is below `len`, else another index below it, so that no access is checked.
+#[inline(always)]
+pub fn index_below(len: usize, i: usize) -> usize {
+    if len.is_power_of_two() {
+        i & (len - 1)
+    } else {
+        i.min(len - 1)
+    }
+}
+
 /// The reference direction of contact frames, unit. Parallel to no axis, face diagonal or space diagonal of a
 /// box that is aligned with the world's axes.
 pub const POLE: Vec3 = Vec3::new(0.36, 0.48, 0.8);

@@ -17,15 +17,15 @@
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
 //! so that the portal of a shallow contact is small and close to the minimum. If v1 is near the ray, the portal is a
-//! *ring*: the support points of three directions around that of the upper bound. A caller whose ray must cross the
-//! portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`] around the ray
-//! and no discovery.
+//! *ring*: the support points of three directions around one that the caller chooses ([`NearRay`]). A caller whose ray
+//! must cross the portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`]
+//! around the ray and no discovery.
 //!
-//! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full; use the initial simplex of the
-//! polytope. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
+//! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full. The caller needs another start, such
+//! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
 //! direction is a separating axis; this is the separation test.
 
-use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
+use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
@@ -43,13 +43,13 @@ pub const MAX_STEPS: u32 = 100;
 /// regular tetrahedron (2.83), the position of a cylinder that slides on a plate jumps (test `continuity`).
 pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 
-/// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum and is refined after the
-/// origin is on its inner side. Measured: if every portal is refined so, deep overlaps take 4 to 13 % more instructions; with
-/// 0.15 boxes at medium depth take 11 % more, and spheres 8 % more support points.
+/// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum, and is refined further
+/// once the origin is on its inner side. Measured: if every portal is refined so, deep overlaps take 4 to 13 % more
+/// instructions; with 0.15, boxes at medium depth take 11 % more, and spheres 8 % more support points.
 const SHALLOW_REL: f64 = 0.25;
 /// The number of tilts in discovery that may find no point on the other side of the ray before the perpendicular direction is
-/// evaluated. Measured: with 3 support points and instructions differ by less than 0.1 %, and rays out of boxes and cylinders
-/// take 3 % fewer support points.
+/// evaluated. Measured: with 3, support points and instructions differ by less than 0.1 %, and rays out of boxes and
+/// cylinders take 3 % fewer support points.
 const MAX_TILTS: u32 = 5;
 /// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
 /// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
@@ -90,7 +90,7 @@ pub struct PortalPlane {
 impl PortalPlane {
     /// Returns whether `w` is above the plane by more than `level`, metres; `false` for NaN.
     #[inline(always)]
-    pub fn is_below(&self, w: &Vec3, level: f64) -> bool {
+    fn is_exceeded_by(&self, w: &Vec3, level: f64) -> bool {
         self.normal.dot(w) - self.offset > level * self.length
     }
 }
@@ -358,8 +358,7 @@ pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
     tilt: f64,
 ) -> Result<Option<Portal>, Stop> {
     trace::stage("ring");
-    let e1 = perpendicular(axis);
-    let e2 = axis.cross(&e1);
+    let [e1, e2] = tangents(axis);
     let half = 0.75_f64.sqrt();
     // Also for NaN.
     let tilt = lesser(tilt, WIDEST_RING_TAN);
@@ -435,7 +434,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
         let mut w = set.farthest_vertex(&normal);
-        if !plane.is_below(&w.w, INSERT_HEIGHT_GAPS * gap) {
+        if !plane.is_exceeded_by(&w.w, INSERT_HEIGHT_GAPS * gap) {
             if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
                 return Ok(());
             }
@@ -444,7 +443,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             let (sample, source) =
                 evaluate_beyond(query, set, fit, corners, &normal, gap, is_along_normal)?;
             w = sample.vertex();
-            if !plane.is_below(&w.w, query.scale.height_eps()) {
+            if !plane.is_exceeded_by(&w.w, query.scale.height_eps()) {
                 if source == DirectionSource::Normal {
                     return Ok(());
                 }

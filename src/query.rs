@@ -129,8 +129,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         })
     }
 
-    /// Runs a query from the state of the last one. For the state of the next [`WarmStart::note_separation`] is to
-    /// follow. `arena`: used by [`Solver::Proven`] and [`Solver::Distance`] alone.
+    /// Runs a query from the state of the last one, and stores the state of an overlap in it. The caller stores that of a
+    /// separation by [`WarmStart::note_separation`]. `arena`: used by [`Solver::Proven`] and [`Solver::Distance`] alone.
     ///
     /// # Errors
     /// [`Stop::Separated`], not of [`Solver::Distance`]; [`Stop::Fault`], also for a direction or an option that is
@@ -229,12 +229,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         first.unwrap_or(Vec3::x())
     }
 
-    /// Proves the overlap of a solver's `hit`, with the known vertices of `set` first, and queries if needed. If
+    /// Proves the overlap of a solver's `hit`, with the known vertices of `set` first, and support calls if needed. If
     /// the depth is at most the tolerance and the witness points, moved by it, do not coincide, replaces them by
     /// two coincident points of the objects. `is_planar`: D lies in a plane.
     ///
     /// # Errors
-    /// [`Stop::Separated`]: a queried direction separates. [`Fault::NonFinite`].
+    /// [`Stop::Separated`]: an evaluated direction separates. [`Fault::NonFinite`].
     #[inline(never)]
     fn prove_overlap(
         &self,
@@ -327,8 +327,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Improves an uncertified depth by a local search from its direction, to a hundredth of the tolerance. If the
     /// minimum is not unique, a polytope may not certify it within the limits, and the upper bound may exceed it
     /// by more than the tolerance; but the direction of the upper bound is close to a minimum.
-    /// Returns whether the depth is a local minimum within the tolerance. The status stays, why it is not certified,
-    /// unless the lower depth closes the gap to the lower bound.
+    /// Returns whether the depth is a local minimum within the tolerance. The status changes only if the new depth closes
+    /// the gap to the lower bound.
     #[cold]
     #[inline(never)]
     fn improve_locally(&self, hit: &mut Solution, limits: &EpaLimits) -> Result<bool, Fault> {

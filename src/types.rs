@@ -23,8 +23,8 @@ pub struct Settings {
     /// planar, 380 for distances. No query takes more than 500 support points in the tests.
     pub max_iterations: u64,
     /// True to request the contact position; it is zero otherwise. Costs 2 to 6 support points, at
-    /// most 24 for faces of more than four corners, none if a state shows that nothing has moved. May
-    /// evaluate one shape without the other.
+    /// most 24 for faces of more than four corners, also of a pair at rest. May evaluate one shape
+    /// without the other.
     pub pos: bool,
     /// True to request the witness points, at no cost; they are zero otherwise.
     pub points: bool,
@@ -69,8 +69,8 @@ pub enum Status {
 }
 
 impl Status {
-    /// Returns the status of a search that ended early, with `iterations` left of `max_iterations`, of which the
-    /// library allows `cap`.
+    /// Returns the status of a search that ended early, with `iterations_left` of `max_iterations`, of which the library
+    /// allows `cap`.
     pub(crate) fn of_early_end(iterations_left: u64, max_iterations: u64, cap: u64) -> Self {
         match (iterations_left, max_iterations < cap) {
             (0, true) => Status::IterationLimit,

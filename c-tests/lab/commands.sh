@@ -129,17 +129,14 @@ cmake -S cmake -B build -DCMAKE_INSTALL_PREFIX=/usr/local
 cmake --build build
 sudo cmake --install build && sudo ldconfig
 END
-run "an installation" "Up-to-date" "$installed" <<'END'
-cmake -S cmake -B build && cmake --build build && sudo cmake --install build && sudo ldconfig
-END
 run "a program on the installation" "libccd.so.2 => $prefix" 's/.*/cc program.c & \&\& .\/a.out \&\& ldd a.out/' <<'END'
 $(pkg-config --cflags --libs ccd) -Wl,-rpath,"$(pkg-config --variable=libdir ccd)"
 END
 run "flags of a static link" "include" "" <<'END'
 pkg-config --static --cflags ccd
 END
-run "the installation undone" "^0$" "s/sudo //; s|\$|; find '$prefix' ! -type d \| wc -l|" <<'END'
-sudo xargs rm < build/install_manifest.txt
+run "the installation undone" "^0$" "s/sudo //; s|; sudo ldconfig|; find '$prefix' ! -type d \| wc -l|" <<'END'
+sudo xargs rm < build/install_manifest.txt; sudo ldconfig
 END
 run "a cross build" "^depth 0.100" "s|\\.\\.\\.|../arm64.cmake|; s|-B build|-B arm64|; s|\$| \&\& cmake --build arm64 \&\& \
         aarch64-linux-gnu-gcc program.c -Iinclude arm64/lib/libccd.so.2 -Wl,-rpath,\"\$PWD/arm64/lib\" -lm \&\& \
@@ -206,12 +203,14 @@ elsewhere "steps of release.sh by these names; packaging; itself" <<'END'
 cargo run --release -p lab --bin engines -- long
 cargo run --release -p lab --bin campaigns -- rates
 cargo run --release -p lab --bin campaigns -- wide
+cargo run --release -p lab --bin campaigns -- positions
 cargo vendor
 source.sh OUT
 sh cmake/packages/source.sh OUT
 sh c-tests/lab/release.sh LOGS
 sh c-tests/lab/release.sh LOGS packaging packaging-single
 sh c-tests/lab/fcl_tests.sh
+sh c-tests/lab/libccd_tests.sh
 sh c-tests/lab/ode_demos.sh
 sh c-tests/setup.sh lab
 release.sh LOGS STEP...

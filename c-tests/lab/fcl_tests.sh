@@ -13,28 +13,10 @@ cd "$(dirname "$0")/../.."
 mkdir -p target/c-tests/fcl-tests
 work=$(cd target/c-tests/fcl-tests && pwd)
 
-# With lists of its own: the machine's may name no sources.
-fetch() {
-    apt=$work/apt
-    mkdir -p "$apt/parts" "$apt/lists/partial" "$apt/archives/partial"
-    . /etc/os-release
-    cat >"$apt/parts/source.sources" <<END
-Types: deb-src
-URIs: http://deb.debian.org/debian
-Suites: $VERSION_CODENAME
-Components: main
-Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
-END
-    set -- -q -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$apt/parts" -o Dir::State::lists="$apt/lists" \
-        -o Dir::Cache="$apt" -o APT::Sandbox::User=
-    apt-get "$@" update >&2
-    (cd "$apt" && apt-get "$@" source --download-only fcl >&2)
-    rm -rf "$work/source"
-    mkdir "$work/source"
-    tar xzf "$apt"/fcl_0.7.*.orig.tar.gz -C "$work/source" --strip-components=1
-}
+# shellcheck source=c-tests/lab/debian_source.sh
+. c-tests/lab/debian_source.sh
 source=${FCL_SOURCE:-$work/source}
-[ -n "${FCL_SOURCE:-}" ] || [ -d "$source/test" ] || fetch
+[ -n "${FCL_SOURCE:-}" ] || [ -d "$source/test" ] || debian_source fcl "$work"
 tests=$(cd "$source/test" && pwd)
 [ -d "$tests/gtest" ] || { echo "fcl_tests.sh: $source is no source of FCL 0.7" >&2; exit 2; }
 

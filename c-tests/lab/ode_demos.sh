@@ -13,27 +13,10 @@ cd "$(dirname "$0")/../.."
 mkdir -p target/c-tests/ode-demos
 work=$(cd target/c-tests/ode-demos && pwd)
 
-# With lists of its own: the machine's may name no sources.
-fetch() {
-    apt=$work/apt
-    mkdir -p "$apt/parts" "$apt/lists/partial" "$apt/archives/partial"
-    . /etc/os-release
-    cat >"$apt/parts/source.sources" <<END
-Types: deb-src
-URIs: http://deb.debian.org/debian
-Suites: $VERSION_CODENAME
-Components: main
-Signed-By: /usr/share/keyrings/debian-archive-keyring.gpg
-END
-    set -- -q -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts="$apt/parts" -o Dir::State::lists="$apt/lists" \
-        -o Dir::Cache="$apt" -o APT::Sandbox::User=
-    apt-get "$@" update >&2
-    (cd "$apt" && apt-get "$@" source --download-only ode >&2)
-    mkdir -p "$work/source"
-    tar xzf "$apt"/ode_0.16*.orig.tar.gz -C "$work/source" --strip-components=1
-}
+# shellcheck source=c-tests/lab/debian_source.sh
+. c-tests/lab/debian_source.sh
 source=${ODE_SOURCE:-$work/source}
-[ -n "${ODE_SOURCE:-}" ] || [ -d "$source/ode/demo" ] || fetch
+[ -n "${ODE_SOURCE:-}" ] || [ -d "$source/ode/demo" ] || debian_source ode "$work"
 
 # --- build -----------------------------------------------------------------------------
 

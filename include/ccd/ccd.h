@@ -3,8 +3,8 @@
 
 /* Overlap and penetration of two convex objects that are given by support functions. All calls
  * are re-entrant and keep no state. Object pointers are passed to the callbacks and never
- * dereferenced. Lengths and tolerances are metres; CCD_INIT's value replaces a tolerance that is
- * negative or NaN.
+ * dereferenced. A callback may throw a C++ exception or longjmp out of a query. Lengths and
+ * tolerances are metres; CCD_INIT's value replaces a tolerance that is negative or NaN.
  *
  * support1 and center1 are called with obj1, support2 and center2 with obj2. Moving obj2 by
  * depth * dir separates the objects; with the objects swapped depth is the same and dir the
@@ -60,9 +60,9 @@ CCD_EXPORT void ccdFirstDirDefault(const void *o1, const void *o2, ccd_vec3_t *d
         (ccd)->dist_tolerance = CCD_REAL(1E-6);           \
     } while (0)
 
-/** Reports whether the objects overlap, by GJK. Calls first_dir, no center. Reads no tolerance.
- * Allocates nothing. Returns 1 if they overlap; 0 if they are apart or touch within rounding,
- * if a required callback is NULL or a point is not finite. */
+/** Reports whether the objects overlap, by GJK. Calls first_dir, no center. Reads no tolerance and
+ * no max_iterations. Allocates nothing. Returns 1 if they overlap; 0 if they are apart or touch
+ * within rounding, if a required callback is NULL or a point is not finite. */
 CCD_EXPORT int ccdGJKIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
 /** Computes the shortest translation of obj2 that separates the objects: sep = depth * dir, metres;
@@ -75,8 +75,8 @@ CCD_EXPORT int ccdGJKSeparate(const void *obj1, const void *obj2, const ccd_t *c
  *
  * depth: metres. dir: unit. pos: the contact position, the center of pressure. Each may be NULL.
  * Reads epa_tolerance; if 320 support points or max_iterations are used up first, depth is an
- * upper bound of the least depth. Allocates, and frees before it returns, only if the minimum is (nearly) not
- * unique, as for coaxial cylinders and concentric spheres.
+ * upper bound of the least depth. Allocates, and frees before it returns, only if the minimum is
+ * (nearly) not unique, as for coaxial cylinders and concentric spheres.
  * Returns  0 when the objects overlap;
  *         -1 when they are apart or touch within rounding, when a required callback is NULL or a
  *            point is not finite; -2 when malloc fails. The outputs are unchanged then. */
@@ -84,7 +84,8 @@ CCD_EXPORT int ccdGJKPenetration(const void *obj1, const void *obj2, const ccd_t
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);
 
 /** Reports whether the objects overlap. Calls the centers, which must lie in their objects, not
- * first_dir. Reads no tolerance. Allocates nothing. Returns the values of ccdGJKIntersect. */
+ * first_dir. Reads no tolerance and no max_iterations. Allocates nothing. Returns the values of
+ * ccdGJKIntersect. */
 CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *ccd);
 
 /** Computes the penetration depth, the least translation that separates the objects. Calls the

@@ -125,8 +125,8 @@ struct Shape : ccd_shape_t {
 /** Result of a query. */
 enum class Status : int {
     hit = CCD_HIT,             /**< overlap: every field is valid */
-    limit = CCD_LIMIT,         /**< overlap, less exact than requested; cause says why */
-    miss = CCD_MISS,           /**< apart */
+    limit = CCD_LIMIT,         /**< less exact than requested; cause says why. Overlap, undecided in signed_distance */
+    miss = CCD_MISS,           /**< apart, or touching within rounding */
     no_memory = CCD_NO_MEMORY, /**< an allocation failed */
     bad_input = CCD_BAD_INPUT  /**< an argument or a point is invalid, see CCD_BAD_INPUT */
 };
@@ -143,7 +143,7 @@ enum class Cause : int {
 
 /** Optional outputs, combined by `|`. Depth, bounds and directions are always written. */
 enum Want : unsigned {
-    want_pos = CCD_WANT_POS,       /**< pos: costs 2 to 6 support points, at most 24 */
+    want_pos = CCD_WANT_POS,       /**< pos: costs support points, see CCD_WANT_POS */
     want_points = CCD_WANT_POINTS, /**< point1 and point2: cost nothing */
     want_all = CCD_WANT_ALL        /**< everything */
 };

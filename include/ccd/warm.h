@@ -166,9 +166,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Requests pos. Costs 2 to 6 support points on average, k + 1 for a face of k > 4 corners, of both
- * objects where neither's face contains the other's; at most 24. May call one support function
- * without the other.
+ * Requests pos. Costs, on average, up to 5 support points for a face of up to 4 corners on a larger
+ * one, k + 1 for k > 4 corners, 8 for a disc, 12 where neither face contains the other; at most 24.
+ * May call one support function without the other.
  */
 #define CCD_WANT_POS 1
 
@@ -213,8 +213,8 @@ typedef struct ccd_penetration_t {
    * most half the depth from both objects, within the tolerance. Root mean square error for objects
    * of a quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to
    * 10 corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
-   * round objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller
-   * object's size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
+   * round objects and discs, 15 mm for a cone on its side; for greater depths 2 % of the smaller
+   * object's radius at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
    * moves by at most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
    * ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
    */
@@ -331,7 +331,7 @@ typedef struct ccd_distance_t {
  * functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
  * a box). The signed distance is that of the cores minus both margins, exactly. `max_distance`:
  * metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
- * `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
+ * `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0; CCD_WANT_POS has no effect.
  *
  * Reads dist_tolerance. Allocates only if the cores overlap and their least depth is (nearly) not
  * unique, as for concentric spheres.
@@ -416,7 +416,7 @@ typedef struct ccd_contact_t {
  * size of the face.
  *
  * Rounded edges and corners are reduced to their core: a sphere gives one contact, a lying capsule
- * or cylinder two. A face of more than 8 corners is replaced by an inscribed octagon. If the faces
+ * or cylinder two. A face of more than 9 corners is replaced by an inscribed polygon. If the faces
  * do not overlap in projection, there is one contact, with the closest point of each face. The
  * overlap moves continuously with the objects. For objects with margins, the caller moves the
  * points by the margins along the normal.
@@ -429,8 +429,8 @@ typedef struct ccd_contact_t {
  * box, and 10 more if the cache is out of date. Allocates nothing.
  *
  * Returns the number of contacts written, at least 1. Returns CCD_BAD_INPUT, and writes nothing, if
- * `normal` is zero, not finite or NULL, `slop` negative or NaN, `max` < 1, `contacts` NULL, or a
- * point of a callback not finite.
+ * `normal` is zero, not finite or NULL, `slop` negative or NaN, `max` < 1, `contacts`, `ccd` or a
+ * support callback NULL, or a point of a callback not finite.
  */
 CCD_EXPORT
 int ccdContacts(const void *obj1,

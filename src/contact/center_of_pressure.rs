@@ -56,7 +56,7 @@ use crate::minkowski::vertex_set::VertexSet;
 use crate::types::Solution;
 
 /// Returns the contact position of a hit: the center of pressure of a shallow one, the deep position of a deep one, and a
-/// mean of both between. `set`: the known vertices of the search.
+/// mean of both between. `set`: the known vertices of the search. `tolerance`: metres.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -506,7 +506,7 @@ mod tests {
     }
 
     /// Tests a box that leans by less than its depth over its width: the position is the centroid of the wedge, the
-    /// same whatever is known; four corners and four sides are queried, of the floor nothing if its corners are known.
+    /// same whatever is known; four corners and four sides are evaluated, of the floor nothing if its corners are known.
     #[test]
     fn known_vertices_save_queries_and_move_nothing() {
         let half = Vec3::new(0.125, 0.125, 0.1);

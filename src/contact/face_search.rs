@@ -10,18 +10,18 @@
 //!    small tilt t perpendicular to n, maximises t·r − drop(r), r being its position in the contact frame. At
 //!    |t| = 2 slop / size, a corner with a drop of half the slop has at least the value of any point size / 4 behind
 //!    it along t. If the vertex has a drop greater than the slop, it is not in the face, and half the tilt is
-//!    queried.
+//!    evaluated.
 //! 2. *All corners.* For each side of two corners, the outward direction in which both have the same value is
-//!    queried; it finds a corner beyond that side. A face of k corners is complete after 3 + k + (k − 3) queries.
+//!    evaluated; it finds a corner beyond that side. A face of k corners is complete after 3 + k + (k − 3) support calls.
 //!    A curved face becomes an inscribed polygon, whose sides are refined in a fixed order, so that the polygon
 //!    moves with the object.
 //!    Known failure (1e-5 of faces): tilted faces of which only an edge and one more corner are within the slop.
 //!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
-//! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are queried with half the tilt: on
+//! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are evaluated with half the tilt: on
 //!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it, if
 //!    p(3t/4) is midway between p(t/2) and p(t). Displacements greater than sqrt(slop · size / 2) are not treated as
 //!    rounding of a corner.
-//! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are queried again. If their vertices
+//! 4. *Cached face* ([`crate::contact::manifold_cache`]). The cached directions are evaluated again. If their vertices
 //!    moved as one rigid body, so did the corners; else the face is searched anew.
 //!
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
@@ -39,8 +39,9 @@ use crate::math::{EPSILON, Vec3, larger, lesser, max_abs};
 use crate::minkowski::support::{Fault, SupportMap};
 use core::mem::swap;
 
-/// Limit on the queries of one object: eight corners, each found twice, and the size.
-const MAX_QUERIES: u32 = 24;
+/// Limit on the support calls of one object: eight corners, each found twice, and the size.
+const MAX_CALLS: u32 = 24;
+
 /// Finds both faces, cached or anew. Returns them with the effective slop: the larger of the caller's and the least
 /// slop for the depth.
 ///
@@ -55,8 +56,8 @@ pub fn faces<A: SupportMap, B: SupportMap>(
 ) -> Result<([ContactFace; 2], f64), Fault> {
     let mut one = FaceSearch::new(obj1, frame, 1.0);
     let mut two = FaceSearch::new(obj2, frame, -1.0);
-    one.query_cached_or_plane(cache.map(|cache| &cache.faces[0]))?;
-    two.query_cached_or_plane(cache.map(|cache| &cache.faces[1]))?;
+    one.confirm_cached_or_find_plane(cache.map(|cache| &cache.faces[0]))?;
+    two.confirm_cached_or_find_plane(cache.map(|cache| &cache.faces[1]))?;
     let depth = one.face.support_height + two.face.support_height;
     let slop = larger(slop, MIN_SLOP_REL * depth);
     let has_slop = cache.is_some_and(|cache| cache.has_slop(slop));
@@ -71,7 +72,8 @@ struct FaceSearch<'a, S> {
     frame: &'a ContactFrame,
     /// 1 for obj1, -1 for obj2: the outward normal is this times the normal of the frame.
     sign: f64,
-    query_count: u32,
+    /// The number of support calls.
+    calls: u32,
     /// The vertex on the support plane.
     first: FaceSample,
     /// The face, as far as it is known.
@@ -79,53 +81,53 @@ struct FaceSearch<'a, S> {
 }
 
 impl<'a, S: SupportMap> FaceSearch<'a, S> {
-    /// Makes a search that has queried nothing.
+    /// Makes a search without support calls.
     fn new(object: &'a S, frame: &'a ContactFrame, sign: f64) -> Self {
         FaceSearch {
             object,
             frame,
             sign,
-            query_count: 0,
+            calls: 0,
             first: FaceSample::default(),
             face: ContactFace::default(),
         }
     }
 
     /// Evaluates the object along the tilted outward normal.
-    fn query(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
+    fn evaluate(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
         let dir = self.frame.tilted_direction(self.sign, tilt);
         let p = self.object.support(&dir);
-        self.query_count += 1;
+        self.calls += 1;
         self.face.coord_eps = larger(self.face.coord_eps, 8.0 * EPSILON * max_abs(&p));
         let mut found = self.frame.project(&p)?;
         found.z = self.face.support_height - self.sign * found.z;
         Ok(FaceSample::new(tilt, found))
     }
 
-    /// Queries a candidate for a corner: with the tilt and, if that vertex is not in the face, with half of it.
-    fn query_corner(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
-        let new = self.query(tilt)?;
+    /// Evaluates a candidate for a corner: with the tilt and, if that vertex is not in the face, with half of it.
+    fn evaluate_corner(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
+        let new = self.evaluate(tilt)?;
         if new.found.z <= self.face.slop {
             return Ok(new);
         }
-        self.query(tilt * 0.5)
+        self.evaluate(tilt * 0.5)
     }
 
-    /// Confirms the cached face or, if it has changed, queries the support plane.
-    fn query_cached_or_plane(&mut self, cached: Option<&CachedFace>) -> Result<(), Fault> {
+    /// Confirms the cached face or, if it has changed, evaluates the support plane.
+    fn confirm_cached_or_find_plane(&mut self, cached: Option<&CachedFace>) -> Result<(), Fault> {
         if let Some(cached) = cached {
             self.face.motion = self.confirm_cached(cached)?;
         }
         if self.face.motion.is_none() {
-            self.query_support_plane()?;
+            self.evaluate_support_plane()?;
         }
         Ok(())
     }
 
-    /// Queries the support plane.
-    fn query_support_plane(&mut self) -> Result<(), Fault> {
+    /// Evaluates the support plane.
+    fn evaluate_support_plane(&mut self) -> Result<(), Fault> {
         self.face.support_height = 0.0;
-        self.first = self.query(Vec2::zeros())?;
+        self.first = self.evaluate(Vec2::zeros())?;
         self.face.support_height = -self.first.found.z;
         (self.first.found.z, self.first.corner.z) = (0.0, 0.0);
         Ok(())
@@ -135,10 +137,10 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     fn find_face(&mut self, slop: f64, has_slop: bool) -> Result<(), Fault> {
         if self.face.motion.is_none() || !has_slop {
             if self.face.motion.is_some() {
-                self.query_support_plane()?;
+                self.evaluate_support_plane()?;
             }
             self.face.samples = FixedVec::default();
-            self.query_count = 1;
+            self.calls = 1;
             self.find_first_corners(slop)?;
             if self.face.samples.len() > 1 {
                 self.find_remaining_corners()?;
@@ -162,7 +164,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let mut size = 0.0;
         let mut wide = [self.first; 3];
         for i in 0..3 {
-            let new = self.query(THREE_DIRECTIONS[i] * MAX_TILT_TAN)?;
+            let new = self.evaluate(THREE_DIRECTIONS[i] * MAX_TILT_TAN)?;
             for known in &wide {
                 size = larger(size, offset(&known.found, &new.found).norm());
             }
@@ -174,7 +176,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             self.face.tilt_tan = lesser(2.0 * self.face.slop / size, MAX_TILT_TAN);
             for mut new in wide {
                 if new.found.z > self.face.slop {
-                    new = self.query_corner(new.tilt * (self.face.tilt_tan / MAX_TILT_TAN))?;
+                    new = self.evaluate_corner(new.tilt * (self.face.tilt_tan / MAX_TILT_TAN))?;
                 }
                 if new.found.z <= self.face.slop && !self.mark_if_found(&new) {
                     self.face.samples.push(new);
@@ -237,15 +239,15 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     /// Finds the corner beyond the side from sample `i` to the next; None if there is none.
     fn find_corner_beyond_side(&mut self, i: usize) -> Result<Option<FaceSample>, Fault> {
-        // A corner costs up to two queries, and each unknown core one.
-        let is_last = self.query_count + 2 + self.unknown_cores() > MAX_QUERIES;
+        // A corner costs up to two support calls, and each unknown core one.
+        let is_last = self.calls + 2 + self.unknown_cores() > MAX_CALLS;
         if self.face.samples.len() == MAX_FACE_CORNERS || is_last {
             return Ok(None);
         }
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
         let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
         let out = outwards(&a, &b, 1.0 / tilt_tan, 0.0);
-        let new = self.query_corner(out * tilt_tan)?;
+        let new = self.evaluate_corner(out * tilt_tan)?;
         if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
         }
@@ -271,7 +273,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     /// Finds the core of the corner of sample `i`, whose vertex moves in proportion to the tilt if it is rounded.
     fn find_core(&mut self, i: usize) -> Result<(), Fault> {
         let mut full = *self.face.samples.cyclic(i);
-        if full.has_core || self.query_count >= MAX_QUERIES {
+        if full.has_core || self.calls >= MAX_CALLS {
             return Ok(());
         }
         self.face.samples.cyclic_mut(i).has_core = true;
@@ -281,14 +283,14 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let scale = self.face.tilt_tan / full.tilt.norm();
         if scale < 0.5 {
             // The sample is one of the first directions, with a wide tilt.
-            let new = self.query(full.tilt * scale)?;
+            let new = self.evaluate(full.tilt * scale)?;
             if self.mark_if_found(&new) {
                 return Ok(());
             }
             full = new;
         }
-        if self.query_count < MAX_QUERIES {
-            let near = self.query(full.tilt * 0.5)?;
+        if self.calls < MAX_CALLS {
+            let near = self.evaluate(full.tilt * 0.5)?;
             let moved = offset(&near.found, &full.found).norm();
             let max_moved = self.face.slop / self.face.tilt_tan.sqrt();
             let may_be_round = !self.is_same(&full, &near) && moved <= max_moved;
@@ -307,7 +309,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     }
 
     /// Returns whether two samples, at a tilt and at half of it, are of one rounded corner, not two sharp ones: their drops
-    /// are as p(t) has them, and the vertex between them is midway, unless the query for it is needed for another core.
+    /// are as p(t) has them, and the vertex between them is midway, unless the support call for it is needed for another core.
     fn is_round_between(&mut self, near: &FaceSample, full: &FaceSample) -> Result<bool, Fault> {
         let moved = offset(&near.found, &full.found);
         // c + R t has the drop R t²/2 below c.
@@ -316,15 +318,15 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         if off > ROUND_CORNER_REL * drop + self.face.coord_eps {
             return Ok(false);
         }
-        if self.query_count + self.unknown_cores() >= MAX_QUERIES {
+        if self.calls + self.unknown_cores() >= MAX_CALLS {
             return Ok(true);
         }
-        let middle = self.query((near.tilt + full.tilt) * 0.5)?;
+        let middle = self.evaluate((near.tilt + full.tilt) * 0.5)?;
         let off = offset(&((near.found + full.found) * 0.5), &middle.found).norm();
         Ok(off <= ROUND_CORNER_REL * moved.norm() + self.face.coord_eps)
     }
 
-    /// Returns the number of samples whose core is not known, each of which costs a query.
+    /// Returns the number of samples whose core is not known, each of which costs a support call.
     fn unknown_cores(&self) -> u32 {
         self.face.samples.iter().filter(|s| !s.has_core).count() as u32
     }
@@ -352,14 +354,14 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         self.face.corners = corners;
     }
 
-    /// Queries the cached directions. Returns the motion of the cached face; None if the face has changed.
+    /// Evaluates the cached directions. Returns the motion of the cached face; None if the face has changed.
     fn confirm_cached(&mut self, cached: &CachedFace) -> Result<Option<Motion>, Fault> {
         for [tilt, ..] in cached.samples() {
             // Fails for NaN and for a zero tilt too.
             if !(tilt.norm() > 0.0 && tilt.norm() <= 0.5) {
                 return Ok(None);
             }
-            let new = self.query(tilt)?;
+            let new = self.evaluate(tilt)?;
             self.face.samples.push(new);
         }
         let slop = larger(f64::from(cached.slop), self.face.coord_eps);
@@ -379,7 +381,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             let heights = self.face.samples.iter().map(|s| -s.corner.z);
             self.face.support_height = heights.fold(f64::NEG_INFINITY, larger);
         } else {
-            self.query_support_plane()?;
+            self.evaluate_support_plane()?;
         }
         let height = self.face.support_height;
         for sample in self.face.samples.iter_mut() {

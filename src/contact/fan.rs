@@ -17,7 +17,7 @@ pub fn area2(a: &Vec3, b: &Vec3) -> f64 {
 
 /// Returns a vertex moved along unit `out` and raised by a drop.
 #[inline(always)]
-pub fn moved(v: &Vec3, out: Vec2, distance: f64, raised: f64) -> Vec3 {
+fn moved(v: &Vec3, out: Vec2, distance: f64, raised: f64) -> Vec3 {
     Vec3::new(v.x + distance * out.x, v.y + distance * out.y, v.z - raised)
 }
 
@@ -38,8 +38,8 @@ impl Fan {
         len: 0,
     };
 
-    /// Becomes the fan of a polygon: each corner moved outwards by `distance` and raised by the drop that all have in common.
-    /// An edge has its ends also to both sides, a point has four vertices.
+    /// Sets the vertices to the corners of a polygon, moved outwards by `distance`, metres, and raised by the drop that all
+    /// have in common. Each end of an edge becomes two vertices, one of them to the side; a point becomes four.
     #[inline(always)]
     pub fn set(&mut self, corners: &ContactPolygon, distance: f64) {
         self.len = 0;
@@ -188,7 +188,7 @@ impl Fan {
         }
     }
 
-    /// Returns whether the overlap has more volume without a vertex below it.
+    /// Returns whether vertex `i` is below the overlap, and the overlap has more volume without it.
     fn is_steep(&self, i: usize) -> bool {
         let [p, _] = self.side(if i > 0 { i - 1 } else { self.len - 1 });
         let [v, q] = self.side(i);
@@ -203,8 +203,8 @@ impl Fan {
         [&self.vertices[i], &self.vertices[i + 1]]
     }
 
-    /// Returns whether a vertex is nearer than the line of its neighbours, and not higher than the plane of these and the
-    /// deepest point. (The object is convex, so the surface extends to that line.)
+    /// Returns whether vertex `i` is on the inner side of the line of its neighbours, and not higher than the plane of these
+    /// and the deepest point. (The object is convex, so the surface extends to that line.)
     fn is_dent(&self, i: usize) -> bool {
         let [p, _] = self.side(if i > 0 { i - 1 } else { self.len - 1 });
         let [v, q] = self.side(i);

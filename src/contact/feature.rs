@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Queries one object of a contact along directions tilted from the normal.
+//! Evaluates one object of a contact along directions tilted from the normal.
 //!
 //! The *drop* of a vertex is its distance below the support plane, in units of the depth. Its *height* along a unit
 //! vector `out` perpendicular to the normal n is its component along n + T out, divided by T.
@@ -23,7 +23,7 @@ pub fn four_directions(out: Vec2) -> [Vec2; 4] {
     [out, left, -out, -left]
 }
 
-/// A contact of two objects: its frame, the tilt, and queries of their vertices.
+/// A contact of two objects: its frame, the tilt, and the evaluation of their vertices.
 pub struct ContactQuery<'q, A, B> {
     md: &'q MinkowskiDifference<A, B>,
     pub frame: ContactFrame,
@@ -46,7 +46,7 @@ pub struct ContactQuery<'q, A, B> {
 }
 
 impl<'q, A: SupportMap, B: SupportMap> ContactQuery<'q, A, B> {
-    /// Makes the queries of a contact. The frame's origin is midway between the support planes. `extents`: of both
+    /// Prepares the evaluation of a contact. The frame's origin is midway between the support planes. `extents`: of both
     /// objects. `gap`: the distance of the support planes, metres. `depth`: the larger of that and the tolerance, metres.
     #[inline(always)]
     pub fn new(
@@ -77,7 +77,7 @@ impl<'q, A: SupportMap, B: SupportMap> ContactQuery<'q, A, B> {
     /// # Errors
     /// [`Fault::NonFinite`].
     #[inline(always)]
-    pub fn query(&self, object: usize, out: Vec2) -> Result<Vec3, Fault> {
+    pub fn evaluate(&self, object: usize, out: Vec2) -> Result<Vec3, Fault> {
         let [e1, e2] = &self.frame.axes;
         let aside = (e1 * out.x + e2 * out.y) * (self.tilt * self.cosine);
         let dir = self.frame.normal * self.cosine + aside;

@@ -14,6 +14,7 @@ use crate::math::{Vec3, ZERO, larger};
 pub struct Limit {
     /// The outline of the smaller object, mirrored, beyond which no corner matters.
     outline: FixedVec<Vec2, { Fan::CAPACITY }>,
+    /// The overlap of the smaller object with a plane, mirrored.
     overlap: Overlap,
     /// Vertices in the support plane, those farthest along the axes and their opposites.
     face: [Vec2; 4],

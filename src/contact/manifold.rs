@@ -4,7 +4,7 @@
 //! Makes the contact manifold: the region in which the faces of two objects overlap in projection along the normal,
 //! as a few points.
 //!
-//! 1. *Faces.* Find the faces of both objects ([`crate::contact::face`]), convex polygons in the contact frame.
+//! 1. *Faces.* Find the faces of both objects ([`crate::contact::face_search`]), convex polygons in the contact frame.
 //! 2. *Clipping.* Clip the smaller face by the larger one (Sutherland and Hodgman). Each corner of the region has a
 //!    point on both faces, whose distance along the normal is the depth there. Two segments have a crossing point
 //!    or, if they are nearly parallel, a common part, for which a distance of sqrt(2 R slop) is allowed: there a
@@ -30,8 +30,8 @@ const PARALLEL_SINE: f64 = 0.25;
 /// A contact manifold: a list of contacts, the deepest first.
 pub type Manifold = FixedVec<Contact, MAX_CONTACTS>;
 
-/// Returns at most `max` contacts of the face of obj1 along unit `normal` and of obj2 along its opposite. Takes at
-/// most 24 support calls for each object, plus those for a cache that is out of date.
+/// Returns at most `max` contacts of the face of obj1 along unit `normal` and of obj2 along its opposite. `slop`: metres.
+/// `out_cache`: read and updated. Takes at most 24 support calls for each object, plus those for a cache that is out of date.
 ///
 /// # Errors
 /// [`Fault::NonFinite`] from a support function.
@@ -107,7 +107,7 @@ fn reduced(
                 indices.iter().map(|i| *region.cyclic(*i)).collect();
             match &*corners {
                 [a, b] => offset(a, b).norm(),
-                _ => corners.area(),
+                _ => corners.double_area(),
             }
         };
         if kept.len() == best.len() && size(&kept) >= 0.9 * size(&best) {
@@ -124,7 +124,7 @@ fn overlap_of_faces(
     two: &ContactFace,
 ) -> (Polygon<MAX_CONTACTS>, Option<[Vec3; 2]>) {
     let coord_eps = larger(one.coord_eps, two.coord_eps);
-    let is_swapped = one.corners.area() > two.corners.area();
+    let is_swapped = one.corners.double_area() > two.corners.double_area();
     let [small, large] = if is_swapped { [two, one] } else { [one, two] };
     let mut region = Polygon::default();
     if large.corners.len() > 2 {

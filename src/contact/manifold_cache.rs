@@ -5,8 +5,8 @@
 //! contacts with their ids.
 //!
 //! 1. *Faces.* For a polygon whose corners are all known, the outward direction of each side, leaning by
-//!    [`CACHED_LEAN`] to its second corner, is queried again; this confirms each corner, and that there is no corner
-//!    beyond a side. For other faces the directions that found the corners are queried again.
+//!    [`CACHED_LEAN`] to its second corner, is evaluated again; this confirms each corner, and that there is no corner
+//!    beyond a side. For other faces the directions that found the corners are evaluated again.
 //! 2. *Motion.* If the vertices moved as one rigid body within a quarter of the slop, the face is the same.
 //! 3. *Ids.* A contact keeps its id while it moves with either object, within a quarter of the region's size: each
 //!    id goes to the contact closest to its old position, moved with either face.
@@ -23,7 +23,7 @@ use crate::geometry::polygon::{Polygon, Vec2, offset};
 use crate::math::{Vec3, larger};
 use nalgebra::UnitComplex;
 
-/// Contacts whose ids are stored.
+/// The number of contacts whose ids are stored.
 const MAX_IDS: usize = 8;
 /// Error of the vertices, which are stored as `f32`, relative to the size of the face.
 const F32_REL_TOL: f64 = 4.0 * f32::EPSILON as f64;

@@ -17,8 +17,9 @@ pub type ContactPolygon = Polygon<MAX_POLYGON_CORNERS>;
 pub struct Overlap {
     /// Twice the volume, in depths, m².
     pub volume: f64,
-    /// The sum of its vertices, and their number.
+    /// The sum of its vertices, metres.
     pub sum: Vec2,
+    /// The number of its vertices.
     pub count: f64,
 }
 
@@ -51,7 +52,8 @@ pub fn volume_beyond(a: &Vec3, at: &Vec3, b: &Vec3) -> f64 {
     volume_of(a, at) + volume_of(at, b) - volume_of(a, b)
 }
 
-/// Returns a vertex without the common drop, and at the end of the overlap if it is beyond it.
+/// Returns a vertex raised by the common drop; if it is then below the overlap (a drop above 1), the point of its ray from
+/// the deepest point at which the linear drop is 1.
 #[inline(always)]
 pub fn in_overlap(v: &Vec3, common: f64) -> Vec3 {
     let z = larger(v.z - common, 0.0);

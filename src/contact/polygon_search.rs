@@ -44,7 +44,7 @@ const MAX_SIDE_DROP: f64 = 1.0 + 0.5 * TILT_FACTOR * TILT_FACTOR;
 #[derive(Clone, Copy, Default)]
 struct Corner {
     at: Vec3,
-    /// The same without the common drop, at the end of the overlap ([`in_overlap`]).
+    /// The same in the overlap ([`in_overlap`]).
     inside: Vec3,
     /// The first and the last direction, counterclockwise, that returned the corner.
     first: Vec2,
@@ -62,6 +62,7 @@ struct Found {
     corners: FixedVec<Corner, MAX_POLYGON_CORNERS>,
     /// The drop that all corners have in common.
     common: f64,
+    /// The overlap of the polygon with a plane.
     own: Overlap,
 }
 
@@ -83,7 +84,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
             own: Overlap::EMPTY,
         };
         for out in four_directions(Vec2::x()) {
-            let at = self.query(object, out)?;
+            let at = self.evaluate(object, out)?;
             found.add_first(at, out, self.vertex_offset);
             if let Some(limit) = &mut limit {
                 if limit.add(&at) && limit.is_plane() {
@@ -120,7 +121,7 @@ impl<A: SupportMap, B: SupportMap> ContactQuery<'_, A, B> {
                     continue;
                 }
                 let out = p.out;
-                let at = self.query(object, out)?;
+                let at = self.evaluate(object, out)?;
                 let level = larger(self.height(&p.at, &out), self.height(&q.at, &out));
                 let inside = in_overlap(&at, found.common);
                 let volume = volume_beyond(&p.inside, &inside, &q.inside);

@@ -9,16 +9,16 @@
 /// width. Measured: with 1.8 the position of a rolling cylinder jumps by 7 mm and the error of rounded boxes is 1.5 mm in
 /// place of 0.9 mm.
 pub const TILT_FACTOR: f64 = 1.4;
-/// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 52, and the first directions of a face have it. With
+/// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 31, and the first directions of a face have it. With
 /// a larger one surfaces beside a face are taken for it; a smaller one underestimates the size of curved objects.
 pub const MAX_TILT_TAN: f64 = 0.25;
 /// Largest estimated shift of the centroid by a corner that is not searched, relative to the extent. Real shifts are a third
 /// of the estimate, and those of opposite sides cancel. Measured: with 0.018 a recorded hit takes 0.2 support points less, and
 /// faces of nine and ten corners are 0.2 to 0.3 mm off (`pos jumps 10000`).
 pub const CORNER_SHIFT_REL: f64 = 0.015;
-/// Least growth of the overlap by a corner. Vertices that add less, of a corner that is rounded, would take the place of other
-/// corners. Measured: without it the largest error of bodies with rounded edges is 3.5 mm in place of 1.9 mm; with 0.004 that of a
-/// face of six corners is 0.6 mm, 0.1 mm without it.
+/// Least growth of the overlap by a corner, relative to its volume. Vertices that add less, of a corner that is rounded, would
+/// take the place of other corners. Measured: without it the largest error of bodies with rounded edges is 3.5 mm in place of
+/// 1.9 mm; with 0.004 that of a face of six corners is 0.6 mm, 0.1 mm without it.
 pub const LEAST_GROWTH: f64 = 0.002;
 /// Number of most recent known vertices that may prove a plane.
 pub const MAX_KNOWN: usize = 16;

@@ -15,10 +15,10 @@ pub const MAX_DEFAULT_POINTS: u64 = 160;
 /// The limit of support points of a query that proves the tolerance, up to the end of its polytope; of a ray; and of the
 /// published method.
 ///
-/// Derived: 400 − 80. Measured (`cargo run --release -p lab --bin campaigns -- wide`): up to 80 more, on nearly coincident
-/// bodies, are evaluated beyond this limit, for starts of the polytope that do not contain the origin yet and in the local
-/// search that follows ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). The tests fail at the numbers of `call_limit` in
-/// c-tests/tests/stability/entries.h, at most 500.
+/// Derived: 400 support points in all, less 80. Measured (`cargo run --release -p lab --bin campaigns -- wide`): up to 80, on
+/// nearly coincident bodies, are evaluated beyond this limit, for starts of the polytope that do not contain the origin yet
+/// and in the local search that follows ([`MAX_WALK_POINTS`](crate::local::MAX_WALK_POINTS)). The tests fail at the numbers
+/// of `call_limit` in c-tests/tests/stability/entries.h: 400 for a ray and the published method, 500 for proofs.
 ///
 /// Minima that the limit leaves unproven, of round bodies that are nearly concentric: around the minimum of a ball of radius ρ
 /// whose center is e from the origin, a face at the angle α may have a circumradius of at most α √(ρ e), so that a polytope that

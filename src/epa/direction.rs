@@ -32,9 +32,9 @@ pub const MAX_REFINEMENTS: usize = 4;
 /// The largest number of known differences that replace a corner before a direction is evaluated. Insensitive: 5 to 10.
 const MAX_REPLACED: u32 = 10;
 
-/// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: three points of D, the
-/// normal of which points outward, and which the ray crosses. `lower`: the lower bound of the depth, metres. `tolerance`:
-/// metres. A full set ends the refinement.
+/// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: a triangle of points of D
+/// that the ray crosses, with an outward normal. `lower`: the lower bound of the depth, metres. `tolerance`: metres. A full
+/// set ends the refinement.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -63,7 +63,7 @@ pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
         let Some((dir, value)) = prediction.or_else(|| (plane.1 < target).then_some(plane)) else {
             break;
         };
-        // The upper bound is what a model predicts, or there is no room.
+        // The prediction is the upper bound, or there is no room.
         if !(value < target) || set.is_full() {
             break;
         }

@@ -39,11 +39,10 @@ use crate::types::{Settings, Status};
 /// above it.
 const EXACT_PLANES_REL: f64 = 1e-11;
 /// The number of entries up to which the whole set is looked through for the farthest known difference in a deep overlap too.
-/// Measured: without a limit deep ellipsoids take 15 % more instructions, hulls of 162 corners and capsules 4 %; with 6 hulls
-/// of 42 corners take 5 % more support points, with 12 1.5 %. In shallow overlaps proofs of ellipsoids to 1e-10 m would take
-/// 10 to 28 % more support points.
+/// Measured: without a limit, deep ellipsoids take 15 % more instructions, hulls of 162 corners and capsules 4 %; with 6,
+/// hulls of 42 corners take 5 % more support points, with 12, 1.5 %. In shallow overlaps, proofs of ellipsoids to 1e-10 m
+/// would take 10 to 28 % more support points.
 const MAX_SCANNED: usize = 16;
-
 /// The part of the gap between the closest face and the upper bound that a known difference must close to be inserted without
 /// a support call. Insensitive: 0.45 to 0.8; without it deep boxes take 50 % more instructions.
 const INSERT_GAIN_REL: f64 = 0.75;

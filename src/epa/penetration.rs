@@ -58,12 +58,12 @@ use crate::types::{Solution, Status};
 /// reserve.
 const ROUNDING_GAP_EPS: f64 = 32.0;
 
-/// The largest tangent of the tilt of the ring of a contact that is not deep: 19°. Measured: without a limit two spheres 0.3 of
-/// a diameter deep take 32 support points in place of 20, and hulls of 642 corners 5 % more; with 0.25 hulls of 162 corners
-/// take 3 % more, with 0.15 8 %.
+/// The largest tangent of the tilt of the ring of a contact that is not deep: 19°. Measured: without a limit, two spheres 0.3
+/// of a diameter deep take 32 support points in place of 20, and hulls of 642 corners 5 % more; hulls of 162 corners take
+/// 3 % more with 0.25, 8 % more with 0.15.
 const WIDE_RING_TAN: f64 = 0.35;
-/// The radius of that ring, in upper bounds. Measured: with 2 warm queries of ellipsoids take 6 % more support points, with 4
-/// proofs of them 3 %.
+/// The radius of that ring, in upper bounds. Measured: with 2, warm queries of ellipsoids take 6 % more support points; with
+/// 4, proofs of them 3 %.
 const WIDE_RING_DEPTHS: f64 = 3.0;
 /// The distance from the ray, in radii of the ring, below which a vertex counts as near it and a ring is evaluated.
 const NEAR_RING_REL: f64 = 0.25;
@@ -576,8 +576,9 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         Ok((proof, status))
     }
 
-    /// Returns the proof of the upper bound. `face`: a face of the inner model near it, read for witness points alone;
-    /// `other`: returns another, if the foot is not close to the first: the ray of a refined direction may cross neither.
+    /// Returns the proof of the upper bound. `face`: a face of the inner model near it, read for witness points alone.
+    /// `other`: returns a second face, for a foot that is not close to the first; the ray of a refined direction may cross
+    /// neither.
     #[inline(always)]
     fn proof<const N: usize>(
         &self,

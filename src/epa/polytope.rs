@@ -52,7 +52,7 @@
 //! the key +∞ and form a linked list.
 
 use crate::geometry::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
-use crate::math::{Vec3, larger, lesser, normal};
+use crate::math::{Vec3, index_below, larger, lesser, normal};
 use crate::minkowski::vertex_set::{PAIR_BITS, Vertex, VertexPair, VertexSet};
 
 /// The mark of the bottom of the stack of half-edges in [`EpaPolytope::walk_visible`].
@@ -134,7 +134,7 @@ impl<const F: usize> EpaPolytope<F> {
         key_error: 0.0,
     };
 
-    /// Returns a blank polytope for points of this size, metres. See the field `ulp`.
+    /// Returns a blank polytope whose `ulp`, that of this size in metres, is not zero: codegen, see README.
     #[inline(always)]
     pub fn blank(size: f64) -> Self {
         let mut blank = Self::BLANK;
@@ -145,11 +145,7 @@ impl<const F: usize> EpaPolytope<F> {
     #[inline(always)]
     fn in_range(i: usize) -> usize {
         const { assert!(F % 16 == 0 && F >= 16 && F <= MAX_FACES) };
-        if F.is_power_of_two() {
-            i & (F - 1)
-        } else {
-            i.min(F - 1)
-        }
+        index_below(F, i)
     }
 
     #[inline(always)]
@@ -158,22 +154,13 @@ impl<const F: usize> EpaPolytope<F> {
     }
 
     #[inline(always)]
-    fn edge_in_range(h: usize) -> usize {
-        if F.is_power_of_two() {
-            h & (4 * F - 1)
-        } else {
-            h.min(4 * F - 1)
-        }
-    }
-
-    #[inline(always)]
     fn twin(&self, h: usize) -> usize {
-        usize::from(self.twins.as_flattened()[Self::edge_in_range(h)])
+        usize::from(self.twins.as_flattened()[index_below(4 * F, h)])
     }
 
     #[inline(always)]
     fn set_twin(&mut self, h: usize, twin: usize) {
-        self.twins.as_flattened_mut()[Self::edge_in_range(h)] = twin as u16;
+        self.twins.as_flattened_mut()[index_below(4 * F, h)] = twin as u16;
     }
 
     /// Returns the half-edge that edge 0 of a new face replaces, for [`EpaPolytope::revert`].
@@ -404,15 +391,15 @@ impl<const F: usize> EpaPolytope<F> {
     #[cold]
     #[inline(never)]
     fn recompute_keys(&mut self, key: f64) -> bool {
-        let mut refresh_keys = false;
+        let mut is_closer = false;
         for f in 0..self.used.min(F) {
             let (square, _) = self.plane(f).signed_square();
             if self.keys[f] < f64::INFINITY && square < key {
                 self.keys[f] = Self::key(f, square * (1.0 - KEY_ERROR_REL));
-                refresh_keys = true;
+                is_closer = true;
             }
         }
-        refresh_keys
+        is_closer
     }
 
     /// Inserts the corner `new`. `first`: a face that it is above by more than `level`, metres. `corner` returns the point

@@ -13,7 +13,7 @@ use crate::minkowski::vertex_set::{Vertex, VertexSet};
 /// Returns the witness points of the upper bound. They are those of the point closest to the foot, depth · dir, on
 /// one of these triangles:
 ///
-/// 1. the face, if that point is within `gap`, metres, of the foot;
+/// 1. the face, if that point is close enough to the foot ([`max_foot_distance2`] of `gap`, metres);
 /// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction.
 ///
 /// Returns them with the square of that distance, m².
@@ -61,9 +61,9 @@ pub fn max_foot_distance2(upper: &SupportPlane, gap: f64) -> f64 {
 /// Returns the corners of the face through which the ray along the direction of the upper bound leaves the polytope,
 /// approximately.
 ///
-/// This is the closest face, `closest`, if its distance to the foot, `dir` times the depth, is within `gap`, metres.
-/// Otherwise it is the face closest to the foot among those whose plane the ray crosses before the depth: several faces
-/// may lie in one plane.
+/// This is the closest face, `closest`, if it is close enough to the foot, depth · dir ([`max_foot_distance2`] of `gap`,
+/// metres). Otherwise it is the face closest to the foot among those whose plane the ray crosses before the depth plus the
+/// gap: several faces may lie in one plane.
 pub fn exit_face<const N: usize, const F: usize>(
     upper: &SupportPlane,
     interior: &Vec3,

@@ -31,7 +31,7 @@ impl SupportMap for Object {
 }
 
 /// The vector that a callback writes. The float build has room for a vector of doubles behind it: the callbacks of a program
-/// that was compiled for double would else overwrite the stack, and its answers be wrong without a word.
+/// that was compiled for double would otherwise overwrite the stack, and the answers be wrong without an error.
 #[repr(C)]
 #[cfg_attr(feature = "single", repr(align(8)))]
 #[derive(Default)]

@@ -145,8 +145,9 @@ pub unsafe extern "C-unwind" fn ccdFirstDirDefault(
     unsafe { *dir = Vec3::x().into() };
 }
 
-/// Writes the support point of the Minkowski difference along `dir` to `supp`. `dir` is passed to
-/// the callbacks without normalisation and may be part of `supp`.
+/// Writes the support point of the Minkowski difference along `dir` to `supp`; no effect where a
+/// support callback is NULL. `dir` is passed to the callbacks without normalisation and may be part
+/// of `supp`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn __ccdSupport(
     obj1: *const c_void,

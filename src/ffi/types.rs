@@ -62,7 +62,7 @@ pub struct ccd_t {
     pub dist_tolerance: Real,
 }
 
-/// A support point `v = v1 - v2` of the Minkowski difference and its two witness points.
+/// A support point `v = v1 - v2` of the Minkowski difference, and the vertices of both objects.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ccd_support_t {

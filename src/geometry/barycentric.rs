@@ -105,7 +105,7 @@ pub fn segment(p: &Vec3, a: &Vec3, b: &Vec3) -> ClosestPoint<2> {
 /// of the plane, and the edges that it violates cover the collapsed triangle; if d is 0,
 /// NaN makes every edge a candidate.
 ///
-/// The fourth power of the coordinates must not overflow (coordinates below 1e77; single: 1e9).
+/// The fourth power of the coordinates must not overflow (coordinates below 1e77).
 #[inline]
 pub fn triangle(p: &Vec3, a: &Vec3, b: &Vec3, c: &Vec3) -> ClosestPoint<3> {
     let (ab, ac, pa) = (b - a, c - a, a - p);

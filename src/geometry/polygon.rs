@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Convex polygons in a contact frame. x and y of a corner are its coordinates along the axes; z is its *drop*, the
-//! distance below the support plane, metres. Segments and points are polygons of two corners and of one.
+//! Convex polygons in a contact frame. x and y of a corner are its coordinates along the axes, metres; z is its *drop*, the
+//! distance below the support plane: in metres for a contact manifold, in depths for a contact position. Segments and
+//! points are polygons of two corners and of one.
 
 use crate::geometry::fixed_vec::FixedVec;
 use crate::math::{Vec3, larger, lesser};
@@ -34,12 +35,12 @@ pub type Polygon<const CAPACITY: usize> = FixedVec<Vec3, CAPACITY>;
 
 impl<const CAPACITY: usize> Polygon<CAPACITY> {
     /// Returns the sides, from corner to corner; a point has one side of length 0.
-    pub fn sides(&self) -> impl Iterator<Item = (Vec3, Vec3)> + Clone + '_ {
+    fn sides(&self) -> impl Iterator<Item = (Vec3, Vec3)> + Clone + '_ {
         (0..self.len()).map(|i| (*self.cyclic(i), *self.cyclic(i + 1)))
     }
 
-    /// Returns twice the area vector (Newell): z is twice the area, and it is perpendicular to the mean plane.
-    fn area_vector(&self) -> Vec3 {
+    /// Returns twice the area vector (Newell): z is twice the area, m², and it is perpendicular to the mean plane.
+    fn double_area_vector(&self) -> Vec3 {
         // Relative to a corner: far from the origin the products would be less exact.
         let first = self.cyclic(0);
         let triangles = self.sides().map(|(p, q)| (p - first).cross(&(q - first)));
@@ -47,8 +48,8 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
     }
 
     /// Returns twice the area, m².
-    pub fn area(&self) -> f64 {
-        self.area_vector().z
+    pub fn double_area(&self) -> f64 {
+        self.double_area_vector().z
     }
 
     /// Returns the polygon without duplicate corners (no farther than `merged` from an earlier one) and without
@@ -123,7 +124,7 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
         let drop = if self.len() == 2 {
             a.z + (b.z - a.z) * segment_parameter(at, a, b)
         } else {
-            let normal = self.area_vector();
+            let normal = self.double_area_vector();
             let mean = self.iter().sum::<Vec3>() / self.len() as f64;
             mean.z - normal.xy().dot(&offset(&mean, at)) / normal.z
         };
@@ -155,7 +156,7 @@ impl<const CAPACITY: usize> Polygon<CAPACITY> {
     }
 
     /// Returns the indices of at most `most` corners, `first` and then the others in their order, which span the
-    /// largest area; of two corners, the longest distance. (Indices count on beyond the length.)
+    /// largest area; of two corners, the longest distance. Indices beyond the length are for [`FixedVec::cyclic`].
     ///
     /// Dynamic programming: the largest fan of triangles about `first` that ends at a corner consists of the
     /// largest fan that ends at an earlier corner and one triangle.
@@ -232,7 +233,7 @@ mod tests {
             turned.rotate_left(k);
             let simplified = polygon(&turned).simplified(1e-6, 1e-6);
             assert_eq!(simplified.len(), 4);
-            assert!((simplified.area() - 2.0).abs() < 1e-8);
+            assert!((simplified.double_area() - 2.0).abs() < 1e-8);
             let line = [[0.0, 0.0], [2.0, 2.0], [1.0, 1.0]];
             turned[0] = line[k % 3];
             turned[1] = line[(k + 1) % 3];
@@ -249,7 +250,7 @@ mod tests {
     #[test]
     fn clipped_polygon_is_the_common_part() {
         let shared = square(0.0, 0.0, 1.0).clipped_by(&square(1.0, 1.0, 1.0), 0.0);
-        assert_eq!(shared.area(), 2.0);
+        assert_eq!(shared.double_area(), 2.0);
         let segment = polygon(&[[-3.0, 0.5], [0.5, 0.5]]).clipped_by(&square(0.0, 0.0, 1.0), 0.0);
         let ends = segment.simplified(EPSILON, 0.0);
         assert_eq!(
@@ -329,11 +330,11 @@ mod tests {
                             .filter(|i| set & (1 << i) != 0)
                             .map(|i| points[i])
                             .collect();
-                        best = best.max(polygon(&chosen).area());
+                        best = best.max(polygon(&chosen).double_area());
                     }
                 }
                 assert!(
-                    (rest.area() - best).abs() < 64.0 * EPSILON,
+                    (rest.double_area() - best).abs() < 64.0 * EPSILON,
                     "{first} {most}"
                 );
             }

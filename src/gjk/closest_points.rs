@@ -6,12 +6,12 @@
 //!
 //! 1. The closest point of the simplex is an upper bound of the distance; −h(n), h being the support function of D,
 //!    is a lower one for every unit n.
-//! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is closer
-//!    to the origin than the simplex.
-//! 3. Query the direction from the simplex to the origin, or the direction in which the sphere fits
+//! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is farther
+//!    towards the origin than the simplex.
+//! 3. Evaluate the direction from the simplex to the origin, or the direction in which the sphere fits
 //!    ([`SphereFit`]) predict the support plane closest to the origin; the prediction is exact at once for
 //!    polytopes rounded by a sphere.
-//! 4. The queried direction is limited to [`MAX_EXTRAPOLATION_TAN`] from the normal of the best plane found so far: a
+//! 4. The evaluated direction is limited to [`MAX_EXTRAPOLATION_TAN`] from the normal of the best plane found so far: a
 //!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
 //! 5. Stop if the gap between the bounds is within the tolerance, if the origin is in the simplex, or if the
 //!    distance is proven to be larger than `max_distance`.
@@ -32,8 +32,8 @@ use crate::trace;
 use crate::types::Status;
 
 /// The largest tangent of the angle from the normal of the best plane to a direction that is evaluated. Measured: without a
-/// limit distances take 4 to 12 % more support points; with 1.0 two of 2,100 exactly touching pairs take 882 of them (campaign
-/// `wide`, seed 4242).
+/// limit, distances take 4 to 12 % more support points; with 1.0, two of 2,100 exactly touching pairs take 882 of them
+/// (campaign `wide`, seed 4242).
 const MAX_EXTRAPOLATION_TAN: f64 = 0.6;
 
 /// Stop criterion of the bounds.
@@ -60,7 +60,9 @@ pub struct ClosestPoints {
     pub is_general: bool,
     /// The distance of the points, metres.
     pub upper: f64,
+    /// The closest point of obj1.
     pub point1: Vec3,
+    /// The closest point of obj2.
     pub point2: Vec3,
     /// Number of support points.
     pub iterations: u64,
@@ -70,7 +72,8 @@ pub struct ClosestPoints {
     pub is_inside: bool,
 }
 
-/// Finds the closest points. Starts along unit `start`; `fit` may hold the sphere radii of the last query.
+/// Finds the closest points. Starts along unit `start`. `fit`: may hold the sphere radii of the last query. `is_general`:
+/// true if `start` is in general position.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -121,7 +124,7 @@ struct ClosestPointsSearch<'s, 'q, A, B> {
     to_origin: Vec3,
     /// The distance of the simplex, metres.
     upper: f64,
-    /// True if the last query was a prediction; the next query is then none. With a radius that is far too large,
+    /// True if the last direction was a prediction; the next one is then none. With a radius that is far too large,
     /// e.g. of a foreign state, each prediction is confirmed but turns the plane by very little.
     was_prediction: bool,
     /// True if the simplex contains the origin.
@@ -150,7 +153,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         self.add(first);
         let mut closest = f64::INFINITY;
         let mut stalls = 0;
-        // The last query was made towards the origin; the last direction towards it was limited.
+        // Whether the last evaluation was towards the origin; whether the last direction towards it was limited.
         let (mut is_step, mut was_limited) = (false, false);
         for _ in 1..larger(goal.max_samples, 1) {
             for _ in 0..MAX_STEPS {
@@ -172,7 +175,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
                 return Ok(Status::Rounding);
             };
-            is_step = !self.query_prediction(&dir, self.gap(goal))?;
+            is_step = !self.evaluate_prediction(&dir, self.gap(goal))?;
             if !is_step {
                 continue;
             }
@@ -233,9 +236,9 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         unit(&(best + perpendicular * (MAX_EXTRAPOLATION_TAN / length)))
     }
 
-    /// Queries the direction in which the sphere fits predict the closest support plane. Returns whether there
+    /// Evaluates the direction in which the sphere fits predict the closest support plane. Returns whether there
     /// was a useful prediction. `dir`: unit direction from the simplex to the origin.
-    fn query_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
+    fn evaluate_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
             compact(&mut self.set, self.simplex.slots());
             self.fit.restart();

@@ -4,7 +4,7 @@
 //! The intersection test, and the proof that D contains the origin: by a portal from an interior point
 //! (G. Snethen, "XenoCollide", Game Programming Gems 7), else by GJK ([`Simplex`]).
 //!
-//! 1. Query the first direction: most separated pairs end here.
+//! 1. Evaluate the first direction: most separated pairs end here.
 //! 2. The interior point is the difference of the centers; without centers, a point on the segment between
 //!    two opposite support points. Find a portal of its origin ray, and move the portal outwards until the
 //!    origin is on its inner side ([`crate::portal`]).
@@ -14,7 +14,7 @@
 //!    as in stacks of aligned boxes), the case is resolved by a portal from an interior point.
 //!
 //! Departures. If a known difference is beyond the origin, the direction does not separate and is not
-//! queried. The simplex starts from the difference of the centers if it is given. Objects that touch within the contact
+//! evaluated. The simplex starts from the difference of the centers if it is given. Objects that touch within the contact
 //! epsilon do not intersect: the origin must be inside D by more. So flat Minkowski differences (both objects
 //! in one plane) do not intersect, except with `is_planar`. A point between two support points may be on the
 //! surface of D, and the origin with it: then a portal proves an overlap only if D has points on the outer side of
@@ -22,7 +22,7 @@
 //!
 //! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or the support value of n is at most the contact
 //! epsilon. `Ok`: D contains the origin, or (undecided) the origin is within rounding of the surface of a simplex
-//! and no queried direction separates. Measured (`touches` of c-tests/tests/contract): of 2 million touches 5 are
+//! and no evaluated direction separates. Measured (`touches` of c-tests/tests/contract): of 2 million touches 5 are
 //! undecided, objects that were turned and whose D has the origin on an edge.
 
 use crate::geometry::barycentric;
@@ -39,10 +39,10 @@ use crate::trace;
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
 /// The least distance of an interior point from the ends of its segment, relative to the segment's length. Measured: with
-/// 0.05 separated pairs take 7 % more support points, with 0.5 10 %.
+/// 0.05, separated pairs take 7 % more support points; with 0.5, 10 %.
 const MIN_END_FRACTION: f64 = 0.25;
 /// Weight of the second of two points in a point between them that is in no plane of symmetry. Insensitive: 0.4 to
-/// 0.48; with 0.5 the origin is on an edge of the tetrahedron more often, and the case stays undecided; with 0.25 6 of 15
+/// 0.48; with 0.5, the origin is on an edge of the tetrahedron more often, and the case stays undecided; with 0.25, 6 of 15
 /// million touches of turned hulls count as hits.
 const GENERIC_FRACTION: f64 = 0.44;
 
@@ -75,8 +75,9 @@ impl Enclosing {
     }
 }
 
-/// Tests whether the objects intersect. Starts along unit `first`. `center`: the difference of trusted
-/// centers. Returns the direction of the upper bound, in which the next query of the pair can start.
+/// Tests whether the objects intersect. Starts along unit `first`. `center`: the difference of trusted centers.
+/// `is_general`: true if `first` is in general position. Returns the direction of the upper bound, in which the next query
+/// of the pair can start.
 ///
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
@@ -119,11 +120,11 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
     contains_origin(query, &mut set, center, &dir, false).map(|_| ())
 }
 
-/// Proves that D contains the origin by more than the contact epsilon (see the limitation at the head): moves a simplex
-/// towards the origin until the simplex contains it, with the known vertices of the set first, and with queries where these do
-/// not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`: unit, the
-/// first search direction. `is_planar`: D lies in a plane, and a triangle or a segment that contains the origin suffices. A
-/// full set is compacted: indices change.
+/// Proves that D contains the origin by more than the contact epsilon (undecided cases: see the head): moves a simplex
+/// towards the origin until the simplex contains it, with the known vertices of the set first, and with support calls where
+/// these do not suffice. `center`: the difference of trusted centers, the first corner if the query still trusts it. `dir`:
+/// unit, the first search direction. `is_planar`: D lies in a plane, and a triangle or a segment that contains the origin
+/// suffices. A full set is compacted: indices change.
 ///
 /// # Errors
 /// As [`intersect`].
@@ -157,7 +158,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
         let was_triangle = simplex.len() == 3;
         let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
             if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
-                // The origin is in the plane of the old face within rounding: query the other side of D.
+                // The origin is in the plane of the old face within rounding: evaluate the other side of D.
                 make_room(set, simplex.slots());
                 query.evaluate(set, &-dir)?;
             }
@@ -191,7 +192,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns a point of D, in its interior or on its surface: on the segment from `from` to the support point along
-/// unit `dir`, as close to the origin as [`MIN_END_FRACTION`] allows. Queries `dir`, and the direction from the
+/// unit `dir`, as close to the origin as [`MIN_END_FRACTION`] allows. Evaluates `dir`, and the direction from the
 /// point to the origin.
 #[inline(never)]
 fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
@@ -272,7 +273,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Returns whether D extends beyond the faces between a portal and `inner`, so that an origin on one of them is
-/// inside D. Queries the normal of that face if no known difference is beyond it. Returns `false` if the origin is on
+/// inside D. Evaluates the normal of that face if no known difference is beyond it. Returns `false` if the origin is on
 /// two faces, that is, on an edge.
 ///
 /// # Errors
@@ -307,7 +308,7 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
 
 /// Resolves the case of an origin on the surface of a simplex within rounding, by a portal from a point
 /// between the simplex and the opposite side of D: that point is well inside D however flat the simplex is.
-/// Returns the corners of the simplex if no portal is found; no queried direction separates then, and D is not flat.
+/// Returns the corners of the simplex if no portal is found; no evaluated direction separates then, and D is not flat.
 #[cold]
 #[inline(never)]
 fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(

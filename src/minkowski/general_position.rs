@@ -12,8 +12,8 @@
 //!
 //! 1. *Vector.* No ω turns the directions parallel to it. Two are in use, chosen by the z of n ([`MAX_POLE_Z`]).
 //! 2. *Size.* The support value of the tilted direction is at most tilt · size above that of n, a rise that
-//!    [`MAX_RISE_TOLERANCES`] limits. The error that such a callback has left is about 7e-16 / tilt times the radius, so a tilt below
-//!    [`MIN_TILT_RAD`] is of no use.
+//!    [`MAX_RISE_TOLERANCES`] limits. The error that such a callback has left is about 7e-16 / tilt times the radius, so a
+//!    tilt below [`MIN_TILT_RAD`] is of no use.
 //! 3. *Confirmation.* If the tolerance allows no tilt, directions are evaluated as they are, and a separation or a
 //!    result counts only if it and one more direction, tilted by [`MIN_TILT_RAD`], do not contradict each other
 //!    ([`SupportQuery::confirm`](crate::minkowski::support_query::SupportQuery::confirm)). If they do, the query runs again
@@ -32,7 +32,7 @@
 //!
 //! Exact callbacks take the same support points with and without (mean of `support_counts.csv`).
 //!
-//! The published method ([`crate::paper::gao`]) evaluates its directions as they are, but for those of a planar query,
+//! The published method ([`crate::paper::gao`]) evaluates its directions as they are, except those of a planar query,
 //! which are tilted within the plane. In single precision the error of such a callback is too large for any tilt, and
 //! nothing is tilted.
 

@@ -20,7 +20,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::math::{Vec3, normalise_unscaled, perpendicular};
+use crate::math::{Vec3, normalise_unscaled, tangents};
 use crate::minkowski::sphere_fit::MIN_ANGLE2;
 use crate::minkowski::support_query::SupportPlane;
 use crate::minkowski::tuning::{SAME_VALLEY_COS, SMOOTH_REL_TOL};
@@ -52,8 +52,7 @@ pub fn newton_step<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane) -> 
     if !is_smooth_between(upper, set, first) {
         return None;
     }
-    let e1 = perpendicular(&n);
-    let e2 = n.cross(&e1);
+    let [e1, e2] = tangents(&n);
     let tangent = |v: &Vec3| Vector2::new(v.dot(&e1), v.dot(&e2));
     let dir_change = |k: usize| tangent(&set.dir(k)) / set.dir(k).dot(&n);
     let vertex_change =

@@ -44,9 +44,9 @@ const EXACT_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
 pub const SAME_CENTER_REL: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-5 };
 /// The least squared angle, radians, between two samples from which a radius or a curvature is computed.
 pub const MIN_ANGLE2: f64 = 1e-10;
-/// The largest ratio of the widths of two rings. Measured: without it 14 % more support points in proofs to 1e-10 m of shallow
-/// round pairs, 1.5 % more instructions of warm hits.
-const MAX_RING_RATIO: f64 = 100.0;
+/// The largest ratio of the radii of two successive circles of corners. Measured: without it, proofs to 1e-10 m of shallow
+/// round pairs take 14 % more support points, warm hits 1.5 % more instructions.
+const MAX_CIRCLE_RATIO: f64 = 100.0;
 
 /// The source of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -254,8 +254,8 @@ impl SphereFit {
     /// On a sphere of radius ρ, with the origin at the distance e = ρ − upper from its center, a chord between the
     /// angles α and γ from the direction of the upper bound is at least as far from the origin as the upper bound if
     /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ. Corners at equal
-    /// angles are a *ring*; the first one is as wide as the gap allows. Without a confirmed fit ρ is that of an arc
-    /// ([`arc_radius`]), the lowest point of which may be farther from the upper bound than the ring: then that is next.
+    /// angles lie on a circle; the first circle is as wide as the gap allows. Without a confirmed fit ρ is that of an arc
+    /// ([`arc_radius`]), the lowest point of which may be farther from the upper bound than the circle: then that is next.
     fn tilted_from_lowest<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -271,7 +271,7 @@ impl SphereFit {
             return None;
         }
         let perpendicular = normal - lowest * along;
-        // The cosine of the corner nearest to `lowest`, and the corner that reaches farthest towards the normal.
+        // The cosine of the corner closest to `lowest`, and the corner that reaches farthest towards the normal.
         let (mut near, mut far, mut far_corner) = (0.0, 0.0, VertexPair::INTERIOR);
         for v in corners.iter().filter(|v| !v.pair.is_interior()) {
             let products = |i: u16| {
@@ -300,8 +300,8 @@ impl SphereFit {
         let sine = perpendicular.norm();
         let way = perpendicular / sine;
         let k = (1.0 - upper.depth / rho).sqrt();
-        let ratio = lesser((1.0 + k) / (1.0 - k), MAX_RING_RATIO);
-        // Faces as wide as the first ring are within the gap.
+        let ratio = lesser((1.0 + k) / (1.0 - k), MAX_CIRCLE_RATIO);
+        // Faces as wide as the first circle are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
         let (mut tilt, mut value) = (larger(ratio * least, first), upper.depth);
         let shift = -upper.point.v.dot(&way) / (rho - upper.depth);
@@ -352,10 +352,10 @@ impl SphereFit {
 /// The exact fits of the local search, whose minimum a prediction may be: e = f, and the changes of direction and
 /// vertex are parallel, within rounding.
 impl SphereFit {
-    /// Returns whether two directions, as far apart as those that confirm a minimum ([`CONFIRM_RANGE_RAD`]), confirm the
-    /// center of each sphere, that of obj1's entry and that of obj2's entry in `pair`: the two estimates of a center differ
-    /// by at most `tolerance` metres. From one direction the tip of a drop fits a sphere, and from several nearby ones the
-    /// rim of a thin disc nearly does.
+    /// Returns whether two directions, at least as far apart as those that confirm a minimum ([`CONFIRM_RANGE_RAD`]),
+    /// confirm the center of each sphere, that of obj1's entry and that of obj2's entry in `pair`: the two estimates of a
+    /// center differ by at most `tolerance`, metres. From one direction the tip of a drop fits a sphere, and from several
+    /// nearby ones the rim of a thin disc nearly does.
     pub fn is_confirmed_twice<const N: usize>(
         &self,
         set: &VertexSet<N>,
@@ -758,7 +758,7 @@ mod tests {
         let (tilted, _) = fit
             .tilted_from_lowest(&set, &near, &upper, &n, gap)
             .unwrap();
-        // The first ring is as wide as the gap allows.
+        // The first circle is as wide as the gap allows.
         let first = 2.0 * (gap / 0.75).sqrt();
         assert!((tilted.y / tilted.x - first).abs() < 1e-6, "{tilted}");
     }

@@ -23,15 +23,16 @@ impl<F: Fn(&Vec3) -> Vec3> SupportMap for F {
     }
 }
 
-/// A support point of D and its two witness points.
+/// A point of D, and the points of the objects whose difference it is: a support point with its two vertices, or a point
+/// between such points or of the centers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct SupportPoint {
-    /// `v1 - v2`, a boundary point of D.
+    /// `v1 - v2`, the point of D.
     pub v: Vec3,
-    /// The vertex of obj1 along the evaluated direction.
+    /// The point of obj1; of a support point, its vertex along the evaluated direction.
     pub v1: Vec3,
-    /// The support point of obj2 along the opposite direction.
+    /// The point of obj2; of a support point, its vertex along the opposite direction.
     pub v2: Vec3,
 }
 
@@ -43,8 +44,7 @@ impl SupportPoint {
         Self { v, v1, v2 }
     }
 
-    /// Returns the largest absolute coordinate of the two witness points: the rounding error of `v`
-    /// is proportional to it.
+    /// Returns the largest absolute coordinate of `v1` and `v2`, metres: the rounding error of `v` is proportional to it.
     #[inline]
     pub fn magnitude(&self) -> f64 {
         larger(max_abs(&self.v1), max_abs(&self.v2))

@@ -206,7 +206,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Returns whether the tolerance allows a tilt.
-    pub fn has_tilt(&self) -> bool {
+    fn has_tilt(&self) -> bool {
         self.tilt() > 0.0
     }
 

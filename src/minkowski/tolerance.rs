@@ -57,7 +57,7 @@ impl Scale {
 
     /// Returns the largest distance of a vertex from the world's origin, metres.
     #[inline(always)]
-    pub fn world_extent(&self) -> f64 {
+    fn world_extent(&self) -> f64 {
         self.world_extent2.sqrt()
     }
 
@@ -71,7 +71,7 @@ impl Scale {
     /// Returns the rounding error of a unit vector times a point of D, metres. Derived: three products, two
     /// sums, and the length of the unit vector.
     #[inline(always)]
-    pub fn product_eps(&self) -> f64 {
+    fn product_eps(&self) -> f64 {
         4.0 * EPSILON * self.size()
     }
 

@@ -10,7 +10,7 @@
 //! A full set does not grow: [`VertexSet::push`] replaces the last entry. A caller that needs all of its
 //! entries tests [`VertexSet::is_full`] first.
 
-use crate::math::{Vec3, ZERO, larger};
+use crate::math::{Vec3, ZERO, index_below, larger};
 use crate::minkowski::support::SupportPoint;
 
 /// A known difference: the index of obj1's vertex and of obj2's.
@@ -86,19 +86,16 @@ impl<const N: usize> VertexSet<N> {
     };
     /// The low bits of a dot product that are replaced by the index of its vertex.
     const INDEX_MASK: u64 = (N.next_power_of_two() - 1) as u64;
+    /// The bits of a dot product that a tag replaces.
     const TAG_MASK: u64 = Self::INDEX_MASK | Self::INDEX_MARK;
     /// The bit above the index, which is always set, so that no tagged product is ±0: codegen, see README.
     const INDEX_MARK: u64 = N.next_power_of_two() as u64;
 
-    /// Returns an index that is in range for any `i`, so that no access is checked.
+    /// Returns an index that is in range for any `i`.
     #[inline(always)]
     fn in_range(i: usize) -> usize {
         const { assert!(N > 0 && N <= NO_INDEX as usize) };
-        if N.is_power_of_two() {
-            i & (N - 1)
-        } else {
-            i.min(N - 1)
-        }
+        index_below(N, i)
     }
 
     /// Returns the number of entries.
@@ -124,7 +121,7 @@ impl<const N: usize> VertexSet<N> {
 
     /// Replaces the entry with index `i`.
     #[inline(always)]
-    pub fn set(&mut self, i: usize, dir: &Vec3, point: &SupportPoint) {
+    fn set(&mut self, i: usize, dir: &Vec3, point: &SupportPoint) {
         let i = Self::in_range(i);
         for (k, coords) in self.coords.iter_mut().enumerate() {
             coords[i] = [point.v1[k], -point.v2[k]];

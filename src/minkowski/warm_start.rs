@@ -92,7 +92,7 @@ impl WarmStart {
         }
     }
 
-    /// Makes this the state of separated objects if a query found them separated; that of an overlap is made by the query.
+    /// Makes this the state of separated objects if a query found them separated. (The query itself stores an overlap.)
     #[inline(always)]
     pub fn note_separation<R>(&mut self, found: &Result<R, Stop>) {
         if let Err(Stop::Separated(axis)) = found {

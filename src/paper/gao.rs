@@ -32,7 +32,7 @@
 //! method on support calls only; the local search of this library, on known vertices, is [`crate::local`].
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
-use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, unit};
+use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, tangents, unit};
 use crate::minkowski::general_position::{tilt_rad, tilted_in_plane};
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
@@ -48,8 +48,8 @@ const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 
 /// Finds a local minimum of the penetration depth from the unit direction `start`: Algorithm 3, or with
 /// [`Until::Shortcut`] Algorithms 4 and 5. `plane_normal`: for a D that lies in a plane, the unit normal of that plane;
-/// the search then starts along the component of `start`, in general position, in the plane. `on_new_ray` is called with |z| whenever the ray
-/// changes, for tests.
+/// the search then starts along the component of `start`, in general position, in the plane. `on_new_ray` is called with |z|
+/// whenever the ray changes, for tests.
 ///
 /// # Errors
 /// `Stop::Separated`; `Stop::Fault` for a point that is not finite.
@@ -110,8 +110,8 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
                     let perturbation = match search.plane_normal {
                         Some(m) => m.cross(&ray.dir) * PERTURBATION_TAN.0,
                         None => {
-                            let e1 = perpendicular(&ray.dir);
-                            e1 * PERTURBATION_TAN.0 + ray.dir.cross(&e1) * PERTURBATION_TAN.1
+                            let [e1, e2] = tangents(&ray.dir);
+                            e1 * PERTURBATION_TAN.0 + e2 * PERTURBATION_TAN.1
                         }
                     };
                     let n = ray.dir + perturbation;
@@ -132,16 +132,16 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
                 let floor = search.tolerance.max(rounding(plane.point.magnitude()));
                 // |q| − |z|. A gap that is NaN or infinite (a plane parallel to the ray) is not
                 // stationary.
-                let stationary = plane.depth / along - plane.depth <= floor;
-                let lower_elsewhere = search.best.depth < plane.depth - floor;
-                if stationary && !lower_elsewhere {
+                let is_stationary = plane.depth / along - plane.depth <= floor;
+                let is_lower = search.best.depth < plane.depth - floor;
+                if is_stationary && !is_lower {
                     let hit = match &perturbed_from {
                         Some(first) if first.depth <= plane.depth => make_result(first, None),
                         _ => make_result(&plane, Some(&last)),
                     };
                     return Ok(Some(hit));
                 }
-                if lower_elsewhere { search.best } else { plane }
+                if is_lower { search.best } else { plane }
             }
         };
         if !search.take_iteration() {

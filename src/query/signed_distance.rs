@@ -170,7 +170,7 @@ fn separated_distance(
         cores.normal
     };
     let (mut depth, mut depth_lower) = (margin - cores.lower, margin - cores.upper);
-    // If the cores touch within rounding, further queries cannot improve the bounds.
+    // If the cores touch within rounding, further support points cannot improve the bounds.
     let is_touch = cores.lower >= -contact_eps && cores.upper <= contact_eps;
     let mut status = cores.status.unless(is_touch);
     if depth.abs() <= contact_eps + 4.0 * EPSILON * margin {

@@ -76,7 +76,7 @@ impl ccd_manifold_cache_t {
 /// size of the face.
 ///
 /// Rounded edges and corners are reduced to their core: a sphere gives one contact, a lying capsule
-/// or cylinder two. A face of more than 8 corners is replaced by an inscribed octagon. If the faces
+/// or cylinder two. A face of more than 9 corners is replaced by an inscribed polygon. If the faces
 /// do not overlap in projection, there is one contact, with the closest point of each face. The
 /// overlap moves continuously with the objects. For objects with margins, the caller moves the
 /// points by the margins along the normal.
@@ -89,8 +89,8 @@ impl ccd_manifold_cache_t {
 /// box, and 10 more if the cache is out of date. Allocates nothing.
 ///
 /// Returns the number of contacts written, at least 1. Returns CCD_BAD_INPUT, and writes nothing, if
-/// `normal` is zero, not finite or NULL, `slop` negative or NaN, `max` < 1, `contacts` NULL, or a
-/// point of a callback not finite.
+/// `normal` is zero, not finite or NULL, `slop` negative or NaN, `max` < 1, `contacts`, `ccd` or a
+/// support callback NULL, or a point of a callback not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn ccdContacts(
     obj1: *const c_void,

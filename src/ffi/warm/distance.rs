@@ -62,7 +62,7 @@ impl From<Solution> for ccd_distance_t {
 /// functions return the cores (a sphere is a point with a margin, a capsule a segment, a rounded box
 /// a box). The signed distance is that of the cores minus both margins, exactly. `max_distance`:
 /// metres, >= 0; the search ends when the distance is proven to be greater, never with INFINITY.
-/// `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0.
+/// `warm`: may be NULL. `want`: CCD_WANT_POINTS or 0; CCD_WANT_POS has no effect.
 ///
 /// Reads dist_tolerance. Allocates only if the cores overlap and their least depth is (nearly) not
 /// unique, as for concentric spheres.

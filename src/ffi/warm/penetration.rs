@@ -13,9 +13,9 @@ use crate::math::Real;
 use crate::query::Solver;
 use crate::types::{Penetration, Solution};
 
-/// Requests pos. Costs 2 to 6 support points on average, k + 1 for a face of k > 4 corners, of both
-/// objects where neither's face contains the other's; at most 24. May call one support function
-/// without the other.
+/// Requests pos. Costs, on average, up to 5 support points for a face of up to 4 corners on a larger
+/// one, k + 1 for k > 4 corners, 8 for a disc, 12 where neither face contains the other; at most 24.
+/// May call one support function without the other.
 pub const CCD_WANT_POS: c_uint = 1;
 /// Requests point1 and point2, at no cost.
 pub const CCD_WANT_POINTS: c_uint = 2;
@@ -44,8 +44,8 @@ pub struct ccd_penetration_t {
     /// most half the depth from both objects, within the tolerance. Root mean square error for objects
     /// of a quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to
     /// 10 corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
-    /// round objects and discs, 15 mm for a cone on its side; for greater depths 3 % of the smaller
-    /// object's size at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
+    /// round objects and discs, 15 mm for a cone on its side; for greater depths 2 % of the smaller
+    /// object's radius at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
     /// moves by at most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
     /// ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
     pub pos: ccd_vec3_t,
