@@ -38,7 +38,7 @@ static void check_moves(int pairs)
                 u[j] = t.n[j] + pow(10, -.1 * (k - 100)) * u[j];
             least = fmin(least, truth_support_value(&p.a, &p.b, u));
         }
-        if (!(t.lower <= least) || !(t.lower <= t.depth))
+        if (!(t.lower <= least + eps) || !(t.lower <= t.depth))
             fail("a support value below the bound", &p.a, &p.b, least, t.lower, t.depth);
         if (!(fabs(truth_support_value(&p.a, &p.b, t.n) - t.depth) <= eps))
             fail("depth is not the support value", &p.a, &p.b, truth_support_value(&p.a, &p.b, t.n), t.depth, t.depth);
