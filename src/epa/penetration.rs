@@ -65,9 +65,11 @@ const WIDE_RING_TAN: f64 = 0.35;
 /// The radius of that ring, in upper bounds. Measured: with 2, warm queries of ellipsoids take 6 % more support points; with
 /// 4, proofs of them 3 %.
 const WIDE_RING_DEPTHS: f64 = 3.0;
-/// The distance from the ray, in radii of the ring, below which a vertex counts as near it and a ring is evaluated.
+/// The distance from the ray, in radii of the ring, below which a vertex counts as near it and a ring is evaluated. Measured:
+/// with 1 boxes take 15 % and hulls 7 to 26 % more support points; below 0.25 the counts change by less than 1 %.
 const NEAR_RING_REL: f64 = 0.25;
-/// The squared turn of the ray, radians, above which the new ray is evaluated too: 29 degrees.
+/// The squared turn of the ray, radians, above which the new ray is evaluated too: 29 degrees. Measured: without that misses
+/// of `ccdGJKPenetration` take 5.6 support points in place of 4.3; from 6 degrees on hulls without centers take 4 to 7 % more.
 const MAX_RAY_TURN2: f64 = 0.25;
 
 /// The input of a query besides the support functions.

@@ -42,7 +42,8 @@ use crate::minkowski::tuning::MIN_TILT_RAD;
 
 /// The largest tilt, radians.
 pub const MAX_TILT_RAD: f64 = 1e-8;
-/// The largest increase of the support value by the tilt, in tolerances.
+/// The largest increase of the support value by the tilt, in tolerances. Measured: with 0.01 the same answers, but fewer
+/// tolerances allow a tilt; with 5 depths are off by more than the tolerance.
 const MAX_RISE_TOLERANCES: f64 = 0.25;
 /// Whether directions are tilted at all: not in single precision.
 pub const HAS_TILT: bool = MIN_TILT_RAD <= MAX_TILT_RAD;
