@@ -300,6 +300,41 @@ mod tests {
         }
     }
 
+    /// Rays in any direction from points close below the surface: x is the start and y the direction where the ellipsoid
+    /// is the unit ball, so that |x + t y| = 1. The discovery of one in 400 takes more points than the set holds.
+    #[test]
+    fn the_ray_leaves_an_ellipsoid_from_close_below_its_surface() {
+        let mut r = Random::new(5);
+        let (tolerance, deepest) = if EPSILON < 1e-10 {
+            (1e-6, -10.0)
+        } else {
+            (1e-3, -4.0)
+        };
+        for _ in 0..3000 {
+            let radii = Vec3::from_fn(|_, _| r.within(0.2, 1.0));
+            let x = r.direction() * (1.0 - 10.0_f64.powf(r.within(deepest, -3.0)));
+            let turn = r.rotation();
+            let d = r.direction();
+            let y = (turn.inverse() * d).component_div(&radii);
+            let (a, b, c) = (y.norm_squared(), x.dot(&y), x.norm_squared() - 1.0);
+            let root = (b * b - a * c).sqrt();
+            let exact = if b > 0.0 {
+                -c / (b + root)
+            } else {
+                (root - b) / a
+            };
+            let shape = ellipsoid(radii, turn, turn * -x.component_mul(&radii));
+            let hit = along(&alone(shape), &d, tolerance, 1000);
+            assert_eq!(hit.status, Status::Converged, "{exact} {hit:?}");
+            let error = hit.depth - exact;
+            let noise = 1e6 * EPSILON;
+            assert!(
+                -noise <= error && error <= tolerance + noise,
+                "{exact} {hit:?}"
+            );
+        }
+    }
+
     /// Rays in any direction, and closer to an edge or to a corner than the tolerance.
     #[test]
     fn the_ray_leaves_a_box() {

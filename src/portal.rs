@@ -25,6 +25,7 @@
 //! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
 //! direction is a separating axis; this is the separation test.
 
+use crate::gjk::simplex::make_room;
 use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
@@ -211,6 +212,15 @@ impl OpenPortal {
         self.towards_ray.dot(w) > MAX_REST * self.height + least_progress
     }
 
+    /// Makes room for another entry: a full set keeps the corners and `next`.
+    fn make_room<const N: usize>(&mut self, set: &mut VertexSet<N>, next: &mut Vertex) {
+        let mut kept = [self.v1, self.v2.unwrap_or(self.v1), *next];
+        make_room(set, &mut kept);
+        self.v1 = kept[0];
+        self.v2 = self.v2.map(|_| kept[1]);
+        *next = kept[2];
+    }
+
     /// Adds a point that is closer to the ray. Returns the portal if that completes it.
     #[inline(always)]
     fn add(&mut self, ray: &Vec3, next: Vertex) -> Option<Portal> {
@@ -271,7 +281,8 @@ impl OpenPortal {
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
 /// metres. `near2`: the square of the distance up to which v1 counts as near the ray, m². The corners are in the order in
-/// which the portal's normal points along the ray. A full set ends the discovery: `None`.
+/// which the portal's normal points along the ray. A full set ends the discovery, `None`, if the ray need not cross the
+/// portal; else it is compacted. Measured: rays out of ellipsoids at depths of 1e-13 to 1e-3 of the size fill it once in 400.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
@@ -303,6 +314,9 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
         }
         let mut next = set.farthest_vertex(&open.towards_ray);
         if !open.is_closer(&next.w, least_progress) {
+            if let NearRay::Perpendicular = near_ray {
+                open.make_room(set, &mut next);
+            }
             let Some(best) = evaluate_towards_ray(query, set, &mut open, length, next)? else {
                 return Ok(None);
             };

@@ -33,7 +33,7 @@ use crate::minkowski::general_position::{
 use crate::minkowski::separating_axis::test_axis;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Direction, Stop, SupportQuery, if_overlapping};
-use crate::minkowski::tolerance::GAP_REL;
+use crate::minkowski::tolerance::{GAP_REL, Scale};
 use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::minkowski::warm_start::WarmStart;
@@ -231,7 +231,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
 
     /// Proves the overlap of a solver's `hit`, with the known vertices of `set` first, and support calls if needed. If
     /// the depth is at most the tolerance and the witness points, moved by it, do not coincide, replaces them by
-    /// two coincident points of the objects. `is_planar`: D lies in a plane.
+    /// two coincident points of the objects. `is_planar`: D lies in a plane. Returns the lengths of the pair.
     ///
     /// # Errors
     /// [`Stop::Separated`]: an evaluated direction separates. [`Fault::NonFinite`].
@@ -241,7 +241,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit: &mut Solution,
         set: &mut VertexSet<CAPACITY>,
         is_planar: bool,
-    ) -> Result<(), Stop> {
+    ) -> Result<Scale, Stop> {
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let witness = SupportPoint::new(hit.point1, hit.point2);
@@ -269,7 +269,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             let half = (p1 - p2) * 0.5;
             (hit.point1, hit.point2) = (p1 - half, p2 + half);
         }
-        Ok(())
+        Ok(query.scale)
     }
 
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not. The result is blank.
@@ -319,7 +319,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut hit = local::penetration(&mut query, &mut set, &start, is_general, &self.settings)?;
         *state = WarmStart::hit(&hit);
         if hit.status == Status::Converged && self.settings.pos {
-            hit.pos = self.contact_position(&set, &hit)?;
+            hit.pos = self.contact_position(&set, &hit, &query.scale)?;
         }
         Ok(hit)
     }
@@ -397,10 +397,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let until = Until::Shortcut;
         let mut hit = gao::penetration(&self.difference, start, plane, until, &settings, |_| ())?;
         let mut set = VertexSet::EMPTY;
-        self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
+        let scale = self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
         *state = WarmStart::towards(hit.normal, hit.is_general);
         hit.pos = if settings.pos && hit.status == Status::Converged && plane.is_none() {
-            self.contact_position(&set, &hit)?
+            self.contact_position(&set, &hit, &scale)?
         } else {
             hit.middle()
         };
@@ -452,7 +452,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         *state = WarmStart::hit(&hit);
         if hit.status == Status::Converged {
             if self.settings.pos {
-                hit.pos = self.contact_position(&set, &hit)?;
+                hit.pos = self.contact_position(&set, &hit, &query.scale)?;
             }
             return Ok(hit);
         }
@@ -461,28 +461,30 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         hit.status = hit.status.unless(is_minimum && accepts_local);
         hit.pos = hit.middle();
         if hit.status == Status::Converged && self.settings.pos {
-            hit.pos = self.cold_contact_position(&hit)?;
+            hit.pos = self.cold_contact_position(&hit, &query.scale)?;
         }
         Ok(hit)
     }
 
-    /// Returns the contact position of a hit. `set`: the known vertices of its search.
+    /// Returns the contact position of a hit. `set`, `scale`: the known vertices and the lengths of its search. The
+    /// tolerance of the position is the effective one: the requested one may be larger than the objects.
     #[inline(always)]
     fn contact_position<const N: usize>(
         &self,
         set: &VertexSet<N>,
         hit: &Solution,
+        scale: &Scale,
     ) -> Result<Vec3, Fault> {
-        let tolerance = self.settings.tolerance;
+        let tolerance = scale.tolerance(self.settings.tolerance);
         contact_position(&self.difference, set, hit, self.centers.as_ref(), tolerance)
     }
 
     /// Computes the contact position without known vertices. Not inlined, so that its set is on the stack only here.
     #[cold]
     #[inline(never)]
-    fn cold_contact_position(&self, hit: &Solution) -> Result<Vec3, Fault> {
+    fn cold_contact_position(&self, hit: &Solution, scale: &Scale) -> Result<Vec3, Fault> {
         let set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        self.contact_position(&set, hit)
+        self.contact_position(&set, hit, scale)
     }
 }
 

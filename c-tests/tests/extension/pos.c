@@ -23,6 +23,7 @@
 
 static const int single = sizeof(ccd_real_t) == sizeof(float);
 static const double HALF = 0.125; /* radius and half height of a prism, half a box, metres */
+static const double COARSEST = 10; /* metres */
 static const double pi = 3.14159265358979323846;
 
 typedef struct {
@@ -44,7 +45,7 @@ static ccd_t settings(double tolerance)
 {
     ccd_t ccd = shape_query();
     ccd.max_iterations = 500;
-    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)(single ? 1e-5 : tolerance);
+    ccd.mpr_tolerance = ccd.epa_tolerance = ccd.dist_tolerance = (ccd_real_t)(single && tolerance != COARSEST ? 1e-5 : tolerance);
     return ccd;
 }
 
@@ -158,15 +159,17 @@ static void check_near(int every, int seed)
     for (long k = 0, n = 0; n < hits; k++) {
         ccd_real_t verts[2][3 * VERTICES];
         shape_t a = slender_body(SHAPE_POLYTOPE, verts[0]), b = slender_body(kinds[k % 7], verts[1]);
-        const double tolerance = single ? 1e-5 : pow(10, -4 - 2 * (int)(k % 3));
+        /* The coarsest is larger than the bodies, and is taken as a part of their size. */
+        const double requested = k % 4 == 3 ? COARSEST : single ? 1e-5 : pow(10, -4 - 2 * (int)(k % 4));
         ccd_penetration_t p;
-        if (!overlap(&a, &b, NULL, tolerance, 0, &p))
+        if (!overlap(&a, &b, NULL, requested, 0, &p))
             continue;
         /* Most pairs are shallow: a share of the depth that is evenly distributed in its logarithm. */
         set_depth(&b, &p, (double)p.depth * exp(uniform(log(1e-4), 0)));
-        if (!overlap(&a, &b, NULL, tolerance, CCD_WANT_POS, &p))
+        if (!overlap(&a, &b, NULL, requested, CCD_WANT_POS, &p))
             continue;
         n++;
+        const double tolerance = fmin(requested, 2.5e-4 * 2 * pair_size(&a, &b));
         for (int i = 0; i < 2; i++) {
             const double away = distance_from(i ? &b : &a, &p.pos) - 0.5 * (double)p.depth;
             worst = fmax(worst, away);
