@@ -24,7 +24,6 @@
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::geometry::barycentric;
-use crate::gjk::simplex::make_room;
 use crate::math::{Vec3, larger, lesser, normal};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
@@ -143,7 +142,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
                 return Ok(lower);
             }
             self.iterations += 1;
-            make_room(self.set, &mut portal.corners);
+            self.set.make_room(&mut portal.corners);
             let length = n.norm();
             self.query.tolerance = self.settings.tolerance * (along / length);
             let sample = self.query.evaluate(self.set, &(n / length))?;

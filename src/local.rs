@@ -587,7 +587,7 @@ fn is_same(a: &Vec3, b: &Vec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
+    use crate::math::{EPSILON, perpendicular};
     use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
     use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{

@@ -25,7 +25,6 @@
 //! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
 //! direction is a separating axis; this is the separation test.
 
-use crate::gjk::simplex::make_room;
 use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
@@ -215,7 +214,7 @@ impl OpenPortal {
     /// Makes room for another entry: a full set keeps the corners and `next`.
     fn make_room<const N: usize>(&mut self, set: &mut VertexSet<N>, next: &mut Vertex) {
         let mut kept = [self.v1, self.v2.unwrap_or(self.v1), *next];
-        make_room(set, &mut kept);
+        set.make_room(&mut kept);
         self.v1 = kept[0];
         self.v2 = self.v2.map(|_| kept[1]);
         *next = kept[2];

@@ -20,7 +20,7 @@
 //! of the two points. `is_inside`: the origin is in the simplex, and the points coincide.
 
 use crate::gjk::intersect::{CAPACITY, Enclosing};
-use crate::gjk::simplex::{Simplex, compact};
+use crate::gjk::simplex::Simplex;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
@@ -240,7 +240,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     /// was a useful prediction. `dir`: unit direction from the simplex to the origin.
     fn evaluate_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
-            compact(&mut self.set, self.simplex.slots());
+            self.set.compact(self.simplex.slots());
             self.fit.restart();
         }
         let bound = self.query.upper;

@@ -26,7 +26,7 @@
 //! undecided, objects that were turned and whose D has the origin on an edge.
 
 use crate::geometry::barycentric;
-use crate::gjk::simplex::{Simplex, compact, make_room};
+use crate::gjk::simplex::Simplex;
 use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
@@ -150,7 +150,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
         let is_corner = |w: &Vertex| simplex.corners().iter().any(|c| c.pair == w.pair);
         let is_beyond = dir.dot(&w.w) > query.scale.contact_eps();
         if set.len() == 0 || !is_beyond || is_corner(&w) {
-            make_room(set, simplex.slots());
+            set.make_room(simplex.slots());
             w = query.evaluate(set, &dir)?.vertex();
         }
         let contact_eps = query.scale.contact_eps();
@@ -159,7 +159,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
         let Some((to, distance2)) = simplex.add(w, contact_eps, query.scale.size2()) else {
             if !(closest2 > eps2 || has_point_behind || simplex.has_interior()) {
                 // The origin is in the plane of the old face within rounding: evaluate the other side of D.
-                make_room(set, simplex.slots());
+                set.make_room(simplex.slots());
                 query.evaluate(set, &-dir)?;
             }
             let corners = simplex.tetrahedron();
@@ -261,7 +261,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
             if !(length > 0.0) {
                 return Ok(None);
             }
-            make_room(set, &mut portal.corners);
+            set.make_room(&mut portal.corners);
             w = query.evaluate(set, &(n / length))?.vertex();
         }
         if !(n.dot(&w.w) - offset > query.scale.height_eps() * length) {
@@ -299,7 +299,7 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
             let Some(n) = unit(&outward) else {
                 return Ok(false);
             };
-            make_room(set, &mut portal.corners);
+            set.make_room(&mut portal.corners);
             query.evaluate(set, &n)?;
         }
     }
@@ -318,7 +318,7 @@ fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
     center: Option<&SupportPoint>,
     dir: &Vec3,
 ) -> Result<Enclosing, Stop> {
-    compact(set, &mut corners);
+    set.compact(&mut corners);
     let simplex = Enclosing::new(set, &corners, center);
     let [a, b, c, d] = &simplex.corners;
     let t = GENERIC_FRACTION;
@@ -344,11 +344,11 @@ fn evaluate_normals_of_flat<A: SupportMap, B: SupportMap, const N: usize>(
     let Some(inner) = unit(inner) else {
         return Ok(());
     };
-    make_room(set, &mut []);
+    set.make_room(&mut []);
     let w = query.evaluate(set, &perpendicular(&inner))?.w;
     if let Some(n) = unit(&inner.cross(&w)) {
         for n in [n, -n] {
-            make_room(set, &mut []);
+            set.make_room(&mut []);
             query.evaluate(set, &n)?;
         }
     }

@@ -22,7 +22,7 @@
 
 use crate::math::{EPSILON, Vec3, normal, perpendicular, unit};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
-use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexPair};
 
 /// A simplex of points of D: at most three corners, and a slot for the next point.
 ///
@@ -318,45 +318,12 @@ fn is_clear_of(height: f64, p: &Vec3, q: &Vec3, w: &Vec3, slack: f64) -> bool {
     height > 2.0 * slack * normal(p, q, w).norm() + error
 }
 
-/// Makes room for another entry: compacts a full set.
-#[inline(always)]
-pub fn make_room<const N: usize>(set: &mut VertexSet<N>, corners: &mut [Vertex]) {
-    if set.is_full() {
-        compact(set, corners);
-    }
-}
-
-/// Removes all entries except those of the corners, at most four. Indices change.
-#[cold]
-#[inline(never)]
-pub fn compact<const N: usize>(set: &mut VertexSet<N>, corners: &mut [Vertex]) {
-    let mut kept = VertexSet::<N>::EMPTY;
-    let mut olds = [usize::MAX; 8];
-    let mut keep = |old: usize| {
-        if let Some(new) = olds.iter().position(|o| *o == old) {
-            return new;
-        }
-        let pair = VertexSet::<N>::pair_of_entry(old);
-        let new = kept.push(&set.dir(old), &set.point(pair));
-        if let Some(slot) = olds.get_mut(new) {
-            *slot = old;
-        }
-        new
-    };
-    for corner in corners {
-        if !corner.pair.is_interior() {
-            let [a, b] = [corner.pair.a, corner.pair.b].map(|i| keep(i.into()) as u16);
-            corner.pair = VertexPair { a, b };
-        }
-    }
-    set.copy_from(&kept);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::barycentric;
     use crate::minkowski::support_query::SupportQuery;
+    use crate::minkowski::vertex_set::VertexSet;
     use crate::test_shapes::Random;
 
     /// Tests corners in a plane with the origin, and close to each other.
@@ -476,7 +443,7 @@ mod tests {
                 let w = set.difference(pair);
                 simplex.add(Vertex { w, pair }, 1e-14, 100.0);
             }
-            compact(&mut set, simplex.slots());
+            set.compact(simplex.slots());
             assert!(set.len() < 9);
             for corner in simplex.corners() {
                 assert_eq!(corner.w, set.difference(corner.pair));

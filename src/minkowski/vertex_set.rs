@@ -110,6 +110,39 @@ impl<const N: usize> VertexSet<N> {
         self.len >= N
     }
 
+    /// Makes room for another entry: compacts a full set.
+    #[inline(always)]
+    pub fn make_room(&mut self, corners: &mut [Vertex]) {
+        if self.is_full() {
+            self.compact(corners);
+        }
+    }
+
+    /// Removes all entries except those of the corners, at most four. Indices change.
+    #[cold]
+    #[inline(never)]
+    pub fn compact(&mut self, corners: &mut [Vertex]) {
+        let mut kept = Self::EMPTY;
+        let mut olds = [usize::MAX; 8];
+        let mut keep = |old: usize| {
+            if let Some(new) = olds.iter().position(|o| *o == old) {
+                return new;
+            }
+            let new = kept.push(&self.dir(old), &self.point(Self::pair_of_entry(old)));
+            if let Some(slot) = olds.get_mut(new) {
+                *slot = old;
+            }
+            new
+        };
+        for corner in corners {
+            if !corner.pair.is_interior() {
+                let [a, b] = [corner.pair.a, corner.pair.b].map(|i| keep(i.into()) as u16);
+                corner.pair = VertexPair { a, b };
+            }
+        }
+        self.copy_from(&kept);
+    }
+
     /// Adds an entry and returns its index. A full set replaces its last entry.
     #[inline(always)]
     pub fn push(&mut self, dir: &Vec3, point: &SupportPoint) -> usize {
