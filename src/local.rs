@@ -42,7 +42,7 @@ use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
-use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
@@ -64,10 +64,12 @@ pub const MAX_WALK_POINTS: usize = 64;
 /// the witness points. Insensitive: 0.25 to 1.5.
 const EQUAL_TOLERANCES: f64 = 0.75;
 /// The angle, radians, between the normal of a narrow face and the direction of the upper bound up to which they are one
-/// minimum. Measured: without it local searches of capsules, cylinders and ellipsoids take 3 to 15 % more support points.
+/// minimum.
 const SAME_MINIMUM_RAD: f64 = 0.25 * CONFIRM_TILT_RAD;
 /// The squared angle, radians, up to which two directions are equal. Insensitive: 1e-16 to 1e-6.
 const SAME_DIRECTION_ANGLE2: f64 = 1e-10;
+/// The tilt of the direction opposite to the start, radians.
+const OPPOSITE_TILT_RAD: f64 = 0.015;
 
 /// The next step of a walk.
 enum Step {
@@ -159,8 +161,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let first = self.query.evaluate_first(start, is_general)?;
         self.set.push(&self.query.upper.dir, &first);
         if !self.is_centered {
+            // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
+            let dir = perpendicular(start) * OPPOSITE_TILT_RAD - start;
             // Not stored in the set: as a corner it would make the portals wide.
-            let opposite = self.query.evaluate_point(&-start)?;
+            let opposite = self.query.evaluate_point(&(dir / dir.norm()))?;
             self.interior = (first.v + opposite.v) * 0.5;
         }
         let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
