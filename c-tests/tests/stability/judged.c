@@ -274,6 +274,41 @@ static int is_known(const char *row, const char *entry, int fault, unsigned long
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(row, known[i].row) == 0 && strncmp(entry, known[i].entry, strlen(known[i].entry)) == 0 && fault == known[i].fault)
             return (double)count <= fmax(known[i].part * (double)answers_of_row, ANSWERS_OF_PAIR);
+    /* Less than one pair in a thousand, in the longer runs before a release alone: of a small sample none is allowed. */
+    static const struct {
+        const char *row, *entry;
+        int fault;
+    } rare[] = {
+        {"touching +-1e-12", "distance", FAULT_BIT_LIMIT},
+        {"centre offset along a shared axis", "minimum", FAULT_BIT_LIMIT},
+        {"centre offset along a shared axis", "distance", FAULT_BIT_LIMIT},
+        {"segment or point and solid", "minimum", FAULT_BIT_LIMIT},
+        {"segment or point and solid", "distance", FAULT_BIT_LIMIT},
+        /* by less than two tolerances, at the limit of support points */
+        {"near-coincident centres 1e-8 to 1e-18", "GJK", FAULT_BIT_NOT_MINIMUM},
+        {"near-coincident centres 1e-8 to 1e-18", "separate", FAULT_BIT_NOT_MINIMUM},
+        {"scale 1e-6 to 1e6, any depth", "GJK", FAULT_BIT_NOT_MINIMUM},
+        {"scale 1e-6 to 1e6, any depth", "separate", FAULT_BIT_NOT_MINIMUM},
+        {"capsules, aspect 1e2 to 1e5", "minimum", FAULT_BIT_WITNESS_DEPTH},
+        {"far from the origin 1e8", "local", FAULT_BIT_WITNESS_DEPTH},
+        {"far from the origin 1e8", "local", FAULT_BIT_WITNESS_INSIDE},
+        {"frusta as plates, parallel", "penetration", FAULT_BIT_WITNESS_DEPTH},
+        {"frusta as plates, parallel", "penetration", FAULT_BIT_WITNESS_INSIDE},
+        {"frusta as plates, parallel", "minimum", FAULT_BIT_WITNESS_DEPTH},
+        {"frusta as plates, parallel", "minimum", FAULT_BIT_WITNESS_INSIDE},
+        /* at tolerance 0 */
+        {"needle and plate", "distance", FAULT_BIT_NOT_MINIMUM},
+        {"plates, nearly parallel", "distance", FAULT_BIT_NOT_MINIMUM},
+        {"plates, nearly parallel", "distance", FAULT_BIT_GAP},
+        {"frusta as plates, parallel", "distance", FAULT_BIT_NOT_MINIMUM},
+        {"frusta as plates, parallel", "distance", FAULT_BIT_GAP},
+        {"Minkowski sums", "incremental", FAULT_BIT_POSITION},
+        {"exactly touching", "incremental", FAULT_BIT_POSITION},
+        {"ordinary, near", "incremental", FAULT_BIT_POSITION},
+    };
+    for (size_t i = 0; i < sizeof rare / sizeof *rare; i++)
+        if (strcmp(row, rare[i].row) == 0 && strncmp(entry, rare[i].entry, strlen(rare[i].entry)) == 0 && fault == rare[i].fault)
+            return 1000 * count < answers_of_row;
     return 0;
 }
 
