@@ -42,7 +42,7 @@ use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
-use crate::math::{Vec3, larger, lesser, normalise_unscaled, perpendicular, tangents};
+use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
@@ -68,9 +68,6 @@ const EQUAL_TOLERANCES: f64 = 0.75;
 const SAME_MINIMUM_RAD: f64 = 0.25 * CONFIRM_TILT_RAD;
 /// The squared angle, radians, up to which two directions are equal. Insensitive: 1e-16 to 1e-6.
 const SAME_DIRECTION_ANGLE2: f64 = 1e-10;
-/// The tilt of the direction opposite to the start, radians. Measured: without it local searches from a guess 5 degrees off
-/// take up to 11 % more support points.
-const OPPOSITE_TILT_RAD: f64 = 0.015;
 
 /// The next step of a walk.
 enum Step {
@@ -162,10 +159,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         let first = self.query.evaluate_first(start, is_general)?;
         self.set.push(&self.query.upper.dir, &first);
         if !self.is_centered {
-            // Tilted, because the point opposite to a minimum is usually on a line with it and the origin.
-            let dir = perpendicular(start) * OPPOSITE_TILT_RAD - start;
             // Not stored in the set: as a corner it would make the portals wide.
-            let opposite = self.query.evaluate_point(&(dir / dir.norm()))?;
+            let opposite = self.query.evaluate_point(&-start)?;
             self.interior = (first.v + opposite.v) * 0.5;
         }
         let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
@@ -592,7 +587,7 @@ fn is_same(a: &Vec3, b: &Vec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
+    use crate::math::{EPSILON, perpendicular};
     use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
     use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{
