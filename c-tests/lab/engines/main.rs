@@ -5,7 +5,7 @@
 //! library, as Markdown; progress goes to stderr. Exits with 1 if what is judged fails.
 //!
 //! `cargo run --release -p lab --bin engines` the single queries of the test, in more poses (a minute)
-//! `cargo run --release -p lab --bin engines -- fcl` what FCL's collide costs, by use (2 minutes)
+//! `cargo run --release -p lab --bin engines -- fcl` what FCL's collide costs, by use (3 minutes)
 //! `cargo run --release -p lab --bin engines -- distance` FCL's signed distance with libwarmccd-fcl.so (half a minute)
 //! `cargo run --release -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --release -p lab --bin engines -- steps` a step of whole programs on both libraries (2 minutes)
