@@ -500,15 +500,15 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     /// Returns the tetrahedron with which GJK, from unit `dir`, proves the overlap.
     #[cold]
     #[inline(never)]
-    fn find_gjk_tetrahedron<const N: usize>(
+    fn find_gjk_tetrahedron(
         &mut self,
-        set: &mut VertexSet<N>,
+        set: &mut VertexSet<SMALL_VERTICES>,
         dir: &Vec3,
     ) -> Result<[Vertex; 4], Stop> {
         let found = self.prove_overlap(dir)?;
         // The points need not be support points, so they are stored without a direction.
         Ok(found.corners.map(|point| {
-            let pair = VertexSet::<N>::pair_of_entry(set.push(&Vec3::zeros(), &point));
+            let pair = VertexSet::<SMALL_VERTICES>::pair_of_entry(set.push(&Vec3::zeros(), &point));
             Vertex { w: point.v, pair }
         }))
     }
@@ -517,9 +517,9 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     /// if those of the ring are nearly on a line.
     #[cold]
     #[inline(never)]
-    fn find_wide_tetrahedron<const N: usize>(
+    fn find_wide_tetrahedron(
         &mut self,
-        set: &mut VertexSet<N>,
+        set: &mut VertexSet<SMALL_VERTICES>,
         dir: &Vec3,
     ) -> Result<Option<[Vertex; 4]>, Stop> {
         let apex = self.query.evaluate(set, dir)?.vertex();

@@ -32,7 +32,7 @@ use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
 
 /// The height of a known difference above the support plane of the result, in tolerances, from which the support functions
-/// contradict themselves. A lower one leaves the depth right within the tolerance. Insensitive: 0 to 4.
+/// contradict themselves. A lower one leaves the depth right within the tolerance. Answers are insensitive: 0 to 4.
 const CONTRADICTION_TOLERANCES: f64 = 0.25;
 
 /// A direction that the callbacks received.
