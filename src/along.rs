@@ -115,6 +115,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             self.set,
             &self.dir,
             length,
+            f64::INFINITY,
             0.5 * tolerance * length,
             NearRay::Perpendicular,
         )?;

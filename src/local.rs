@@ -187,7 +187,15 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             let tilt = 0.5 * CONFIRM_TILT_RAD;
             let ring = NearRay::Ring { axis: &ray, tilt };
             let near2 = 0.5 * tolerance * length;
-            let portal = discover(self.query, self.set, &ray, length, near2, ring)?;
+            let portal = discover(
+                self.query,
+                self.set,
+                &ray,
+                length,
+                f64::INFINITY,
+                near2,
+                ring,
+            )?;
             let step = match portal {
                 Some(mut portal) => self.refine(&ray, &mut portal, tolerance)?,
                 None => Step::End(Status::Rounding),

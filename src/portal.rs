@@ -16,7 +16,8 @@
 //! Departures. Both steps take a known difference if one is far enough, and evaluate the callbacks otherwise.
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
 //! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
-//! so that the portal of a shallow contact is small and close to the minimum. If v1 is near the ray, the portal is a
+//! so that the portal of a shallow contact is small and close to the minimum; where the upper bound is large beside the
+//! length of the ray, that perpendicular itself ([`FAR_UPPER_REL`]). If v1 is near the ray, the portal is a
 //! *ring*: the support points of three directions around one that the caller chooses ([`NearRay`]). A caller whose ray
 //! must cross the portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`]
 //! around the ray and no discovery.
@@ -44,8 +45,10 @@ pub const MAX_STEPS: u32 = 100;
 pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 
 /// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum, and is refined further
-/// once the origin is on its inner side. Measured: if every portal is refined so, deep overlaps take 4 to 13 % more
-/// instructions; with 0.15, boxes at medium depth take 11 % more, and spheres 8 % more support points.
+/// once the origin is on its inner side. So is one that is as close to the origin itself: it may lie on the face of the
+/// minimum, while the upper bound is that of another direction. Measured: if every portal is refined so, deep overlaps take 4
+/// to 13 % more instructions; with 0.15, boxes at medium depth take 11 % more, and spheres 8 % more support points; by
+/// the upper bound alone, boxes and icosahedra of every depth take 4 % more.
 const SHALLOW_REL: f64 = 0.25;
 /// The number of tilts in discovery that may find no point on the other side of the ray before the perpendicular direction is
 /// evaluated. Measured: with 3, support points and instructions differ by less than 0.1 %, and rays out of boxes and
@@ -61,6 +64,12 @@ const TILT_GROWTH: f64 = 1.4;
 const WIDEST_TILT_DISTANCES: f64 = 3.0;
 /// See [`WIDEST_TILT_DISTANCES`]. Measured: without the edge 21 % more support points.
 const WIDEST_TILT_EDGES: f64 = 0.75;
+/// The upper bound, in lengths of the ray in D, above which [`discover`] evaluates the perpendicular to the ray at once, where
+/// its caller allows that. Off the middle of a wide plate the line of the centers is nearly parallel to the plate, its
+/// support value is as large as the plate, and its direction far from the minimum's. Measured (support points of boxes
+/// 1 mm deep on plates of 20 m, and of icosahedra at every depth): 0.3 4.7 and 6.9, 0.35 4.7 and 6.9, 0.4 4.8 and
+/// 6.9, without 7.5 and 6.8; proofs of the latter 7.6, 7.5, 7.5 and 7.4.
+pub const FAR_UPPER_REL: f64 = 0.35;
 /// The part of the distance from the ray that the next point of the discovery may leave: a point that closes less than 0.1 %
 /// is the same corner, rounded, and a direction is evaluated.
 const MAX_REST: f64 = 0.999;
@@ -88,6 +97,13 @@ pub struct PortalPlane {
 }
 
 impl PortalPlane {
+    /// Returns whether its distance from the origin is that of a shallow contact.
+    #[inline(always)]
+    fn is_shallow<A: SupportMap, B: SupportMap>(&self, query: &SupportQuery<'_, A, B>) -> bool {
+        let largest2 = SHALLOW_REL * SHALLOW_REL * query.scale.size2();
+        self.offset * self.offset < largest2 * self.length * self.length
+    }
+
     /// Returns whether `w` is above the plane by more than `level`, metres; `false` for NaN.
     #[inline(always)]
     fn is_exceeded_by(&self, w: &Vec3, level: f64) -> bool {
@@ -179,11 +195,13 @@ struct OpenPortal {
     side: f64,
     /// The number of evaluated directions whose point was not beyond the ray.
     failures: u32,
+    /// The upper bound, metres, above which the perpendicular to the ray is evaluated at once.
+    largest_upper: f64,
 }
 
 impl OpenPortal {
     #[inline(always)]
-    fn new(v1: Vertex, ray: &Vec3) -> Self {
+    fn new(v1: Vertex, ray: &Vec3, largest_upper: f64) -> Self {
         let towards_ray = ray * v1.w.dot(ray) - v1.w;
         Self {
             v1,
@@ -192,6 +210,7 @@ impl OpenPortal {
             height: towards_ray.dot(&v1.w),
             side: 1.0,
             failures: 0,
+            largest_upper,
         }
     }
 
@@ -252,8 +271,8 @@ impl OpenPortal {
         None
     }
 
-    /// Returns the next direction, of any length: that of the upper bound, tilted towards the ray; after [`MAX_TILTS`]
-    /// failures the perpendicular to the ray. `length`: approximate length of the ray in D, metres.
+    /// Returns the next direction, of any length: that of the upper bound, tilted towards the ray; of a large upper bound, and
+    /// after [`MAX_TILTS`] failures, the perpendicular to the ray. `length`: approximate length of the ray in D, metres.
     #[inline(always)]
     fn next_dir(&self, upper: &SupportPlane, length: f64) -> Vec3 {
         let edge = self.v2.map_or(0.0, |v2| (v2.w - self.v1.w).norm());
@@ -261,7 +280,7 @@ impl OpenPortal {
         // The distance of the corners from the ray.
         let off = -self.height / norm;
         let mut tilt = f64::INFINITY;
-        if self.failures < MAX_TILTS {
+        if self.failures < MAX_TILTS && !(upper.depth > self.largest_upper) {
             // One product, after the maximum: codegen. (Measured: with two a hit takes 30 instructions more.)
             let distances = WIDEST_TILT_DISTANCES / WIDEST_TILT_EDGES * off;
             let widest = WIDEST_TILT_EDGES * distances.max(edge) / length;
@@ -279,7 +298,8 @@ impl OpenPortal {
 }
 
 /// Finds a portal of the ray along unit `ray` through the origin. `length`: approximate length of the ray in D,
-/// metres. `near2`: the square of the distance up to which v1 counts as near the ray, m². The corners are in the order in
+/// metres. `largest_upper`: the upper bound, metres, above which directions are perpendicular to the ray, as XenoCollide's.
+/// `near2`: the square of the distance up to which v1 counts as near the ray, m². The corners are in the order in
 /// which the portal's normal points along the ray. A full set ends the discovery, `None`, if the ray need not cross the
 /// portal: its caller goes on with all entries. Else it is compacted. Measured: rays out of ellipsoids at depths of 1e-13 to
 /// 1e-3 of the size fill it once in 400.
@@ -292,11 +312,12 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
     set: &mut VertexSet<N>,
     ray: &Vec3,
     length: f64,
+    largest_upper: f64,
     near2: f64,
     near_ray: NearRay<'_>,
 ) -> Result<Option<Portal>, Stop> {
     trace::stage("discovery");
-    let mut open = OpenPortal::new(set.farthest_vertex(ray), ray);
+    let mut open = OpenPortal::new(set.farthest_vertex(ray), ray, largest_upper);
     if !(-open.height > near2) {
         if let NearRay::Ring { axis, tilt } = near_ray {
             if let Some(portal) = ring(query, set, axis, tilt)? {
@@ -442,7 +463,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
             length,
             offset,
         } = plane;
-        if !(length > 0.0) || offset > 0.0 && !is_shallow(query) {
+        if !(length > 0.0) || offset > 0.0 && !(is_shallow(query) || plane.is_shallow(query)) {
             return Ok(());
         }
         let upper = query.upper.depth;
@@ -504,6 +525,7 @@ mod tests {
             &mut set,
             &ray,
             length,
+            FAR_UPPER_REL * length,
             0.5 * gap * length,
             NearRay::Ring {
                 axis: &ray,

@@ -49,7 +49,7 @@ use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{NearRay, Portal, WIDEST_RING_TAN, discover, refine, ring};
+use crate::portal::{FAR_UPPER_REL, NearRay, Portal, WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 use crate::types::{Solution, Status};
 
@@ -68,6 +68,10 @@ const WIDE_RING_DEPTHS: f64 = 3.0;
 /// The distance from the ray, in radii of the ring, below which a vertex counts as near it and a ring is evaluated. Measured:
 /// with 1 boxes take 15 % and hulls 7 to 26 % more support points; below 0.25 the counts change by less than 1 %.
 const NEAR_RING_REL: f64 = 0.25;
+/// The distance of the center from the origin, in sizes of D, up to which it can be close to the origin. Measured: with 0.4,
+/// boxes that slide on a plate take 5.4 support points in place of 3.6; with 0.25, bodies on a plate of 20 m 3 % more, with 0.1
+/// 4 % fewer; other sets differ by at most 1 %.
+const CENTRAL_REL: f64 = 0.2;
 /// The squared turn of the ray, radians, above which the new ray is evaluated too: 29 degrees. Measured: without that misses
 /// of `ccdGJKPenetration` take 5.6 support points in place of 4.3; from 6 degrees on hulls without centers take 4 to 7 % more.
 const MAX_RAY_TURN2: f64 = 0.25;
@@ -114,6 +118,8 @@ struct EpaSolver<'q, 'm, A, B> {
     /// The interior point, and the points of the objects whose difference it is.
     interior: SupportPoint,
     fit: SphereFit,
+    /// [`FAR_UPPER_REL`] for a cold start. The direction of an overlap's state says where the minimum is, however deep.
+    far_upper_rel: f64,
     /// The number of support points that expanded polytopes.
     iterations: u64,
 }
@@ -140,7 +146,8 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     // The axis of a separated pair has been evaluated already; nothing else of its state is used.
     let radius = if is_warm { state.radius } else { [0.0; 2] };
     // The ray is evaluated too if the warm direction is only a guess (its depth is 0).
-    if is_warm && !(state.depth > 0.0) {
+    let is_guess = is_warm && !(state.depth > 0.0);
+    if is_guess {
         query.evaluate(set, &request.ray)?;
     }
     let mut solver = EpaSolver {
@@ -148,6 +155,11 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         request,
         interior: request.center.copied().unwrap_or_default(),
         fit: SphereFit::warm(radius),
+        far_upper_rel: if is_warm && !is_guess {
+            f64::INFINITY
+        } else {
+            FAR_UPPER_REL
+        },
         iterations: 0,
     };
     let (proof, mut status) = match solver.run_without_polytope(set)? {
@@ -238,12 +250,17 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// Returns whether the origin is closer to the center, along unit `dir`, than the upper bound: the polytope will then
-    /// reach all around the origin.
+    /// Returns whether the center is close to the origin, and along unit `dir` closer than the upper bound: the polytope will
+    /// then reach all around the origin. The second alone is true of a body on a wide plate too, where `dir` is nearly
+    /// parallel to the plate.
     #[inline(always)]
     fn is_central(&self, dir: &Vec3) -> bool {
+        let query = &*self.query;
+        let largest2 = CENTRAL_REL * CENTRAL_REL * query.scale.size2();
         let center = self.request.center;
-        center.is_some_and(|center| -center.v.dot(dir) < self.query.upper.depth)
+        center.is_some_and(|center| {
+            -center.v.dot(dir) < query.upper.depth && center.v.norm_squared() < largest2
+        })
     }
 
     /// Finds a portal of the ray and refines it; a wide ring if the center is close to the origin.
@@ -279,7 +296,16 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             axis: &lowest,
             tilt: ring_radius / length,
         };
-        let Some(mut portal) = discover(query, set, ray, length, near2, near_ray)? else {
+        let Some(mut portal) = discover(
+            query,
+            set,
+            ray,
+            length,
+            self.far_upper_rel * length,
+            near2,
+            near_ray,
+        )?
+        else {
             return Ok(None);
         };
         refine(

@@ -33,7 +33,7 @@ use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::tuning::MAX_STALLS;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
+use crate::portal::{FAR_UPPER_REL, MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
@@ -237,7 +237,16 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     let tilt = (2.0 * gap / length).sqrt();
     let ring = NearRay::Ring { axis: &ray, tilt };
     let near2 = 0.5 * gap * length;
-    let Some(mut portal) = discover(query, set, &ray, length, near2, ring)? else {
+    let Some(mut portal) = discover(
+        query,
+        set,
+        &ray,
+        length,
+        FAR_UPPER_REL * length,
+        near2,
+        ring,
+    )?
+    else {
         return Ok(None);
     };
     // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.

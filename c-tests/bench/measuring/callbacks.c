@@ -4,6 +4,7 @@
 /* The support functions and pairs of the C tests, as a shared object for the benchmark: every method measured calls
  * these same callbacks. Shapes are opaque to the benchmark. */
 
+#include "harness/floor.h"
 #include "harness/pairs.h"
 #include "harness/random.h"
 #include "harness/truth.h"
@@ -242,6 +243,25 @@ size_t bench_sliding(size_t n, bench_pose_t **poses)
         }
     }
     return pose ? FRAMES * n : 0;
+}
+
+/* Makes n motions of two frames: a body of the kind slides by 1 cm on a plate of this half width, 1 mm deep, or above it. */
+size_t bench_floor(int kind, double half, int is_above, size_t n, bench_pose_t **poses)
+{
+    enum { FRAMES = 2 };
+    const double height = is_above ? 1e-3 : -1e-3;
+    bench_pose_t *pose = *poses = new_poses(FRAMES * n);
+    ccd_real_t *verts = (ccd_real_t *)calloc(n, 3 * FLOOR_CORNERS * sizeof *verts);
+    for (size_t k = 0; pose && verts && k < FRAMES * n; k++, pose++) {
+        const size_t i = k / FRAMES, f = k % FRAMES;
+        rng_t r = rng(101 + (uint64_t)kind, i);
+        floor_pair(&r, (floor_kind_t)kind, half, height, .01 * (double)f, verts + 3 * FLOOR_CORNERS * i, pose->a, pose->b,
+                   pose->truth.normal);
+        pose->truth.depth = -height;
+        pose->motion = i;
+        pose->frame = f;
+    }
+    return pose && verts ? FRAMES * n : 0;
 }
 
 /* --- files -------------------------------------------------------------------- */

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::libraries::Libraries;
 use super::measure::{Row, Runner, support_value};
 use super::methods::{Start, select};
-use super::scene::{DEPTHS, KINDS, Pair, Scene};
+use super::scene::{DEPTHS, FLOOR_KINDS, KINDS, Pair, Scene};
 use crate::harness;
 
 /// Recorded hits, and misses, evenly spaced. Their mean instructions are within 5 % of those of ten times as many.
@@ -33,6 +33,12 @@ const ON_RECORDED: [Listed; 6] = [
 ];
 const AFTER_A_FRAME: [Listed; 1] = [("ccdMPRPenetrationWarm", Start::Warm, 1e-6)];
 const ON_SLIDING: [Listed; 2] = [("ccdMPRPenetrationWarm, pos", Start::Warm, 1e-6), AFTER_A_FRAME[0]];
+const ON_FLOORS: [Listed; 4] = [
+    ON_RECORDED[1],
+    ON_RECORDED[2],
+    ("ccdMPRIntersect", Start::None, 1e-6),
+    ("ccdPenetrationLocal", Start::Cold, 1e-6),
+];
 const BY_ONE_POINT: [Listed; 1] = [("ccdSignedDistance", Start::Cold, 1e-6)];
 const ON_RANDOM: [Listed; 1] = [("ccdMPRPenetration", Start::None, 1e-6)];
 
@@ -43,6 +49,9 @@ const LIBCCD_ON_RECORDED: [Listed; 3] = [
     ("libccd ccdMPRIntersect", Start::None, 1e-6),
 ];
 const LIBCCD_ON_RANDOM: [Listed; 1] = [LIBCCD_ON_RECORDED[0]];
+
+/// Half widths of floors, metres.
+const FLOORS: [f64; 2] = [1.0, 20.0];
 
 /// A row of the file: means over the queries of a method on a set.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -137,17 +146,23 @@ pub fn measure(libraries: &Libraries, command: &[&str], with_libccd: bool) -> Re
     let is_apart = |pair: &Pair| pair.truth.depth < -1e-9;
     let frames = [sampled(&recorded, "hits", |pair| pair.truth.depth > 1e-9), sampled(&recorded, "misses", is_apart)];
     for frames in &frames {
-        let mut alone = frames.clone();
-        alone.pairs.retain(|pair| pair.frame > 0);
-        add(&alone, &ON_RECORDED, &LIBCCD_ON_RECORDED);
+        add(&frames.second_frames(), &ON_RECORDED, &LIBCCD_ON_RECORDED);
         add(frames, &AFTER_A_FRAME, &[]);
     }
     // The line of the centers separates them.
     let is_decided = |pair: &Pair| is_apart(pair) && support_value(libraries, pair, pair.truth.cold.into()) < -1e-9;
-    let mut decided = sampled(&recorded, "misses by one point", is_decided);
-    decided.pairs.retain(|pair| pair.frame > 0);
-    add(&decided, &BY_ONE_POINT, &[]);
-    add(&Scene::sliding(libraries, NUM_RANDOM), &ON_SLIDING, &[]);
+    let decided = sampled(&recorded, "misses by one point", is_decided);
+    add(&decided.second_frames(), &BY_ONE_POINT, &[]);
+    let sliding = Scene::sliding(libraries, NUM_RANDOM);
+    add(&sliding, &ON_SLIDING, &[]);
+    add(&sliding.second_frames(), &ON_RANDOM, &LIBCCD_ON_RANDOM);
+    for half in FLOORS {
+        for (kind, is_above) in (0..FLOOR_KINDS.len()).flat_map(|kind| [(kind, false), (kind, true)]) {
+            let frames = Scene::floor(libraries, kind, half, is_above, NUM_RANDOM);
+            add(&frames.second_frames(), &ON_FLOORS, &LIBCCD_ON_RECORDED);
+            add(&frames, &AFTER_A_FRAME, &[]);
+        }
+    }
     for kind in 0..KINDS.len() {
         for depth in 0..DEPTHS.len() {
             add(&Scene::random(libraries, kind, depth, NUM_RANDOM), &ON_RANDOM, &LIBCCD_ON_RANDOM);

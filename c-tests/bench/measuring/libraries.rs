@@ -49,6 +49,7 @@ pub struct Callbacks {
     ) -> *mut c_void,
     pub truth: unsafe extern "C-unwind" fn(*const c_void, *const c_void, f64, *mut [f64; 3], *mut f64) -> f64,
     pub sliding: unsafe extern "C-unwind" fn(usize, *mut *mut Pair) -> usize,
+    pub floor: unsafe extern "C-unwind" fn(c_int, f64, c_int, usize, *mut *mut Pair) -> usize,
     pub counted: unsafe extern "C-unwind" fn(unsafe extern "C-unwind" fn(*mut c_void), *mut c_void),
     pub end: unsafe extern "C-unwind" fn(),
 }
@@ -138,6 +139,7 @@ impl Libraries {
                 place: function(object, "bench_place"),
                 truth: function(object, "bench_truth"),
                 sliding: function(object, "bench_sliding"),
+                floor: function(object, "bench_floor"),
                 counted: function(object, "bench_counted"),
                 end: function(object, "bench_end"),
             }

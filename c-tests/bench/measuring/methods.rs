@@ -53,7 +53,7 @@ const fn entry(name: &'static str, place: Place) -> Entry {
 }
 
 /// Every method.
-const METHODS: [Entry; 23] = [
+const METHODS: [Entry; 24] = [
     entry("libccd ccdMPRPenetration", Place::Library),
     entry("libccd ccdGJKPenetration", Place::Library),
     entry("libccd ccdMPRIntersect", Place::Library),
@@ -77,6 +77,7 @@ const METHODS: [Entry; 23] = [
     entry("Coal 3 EPA", Place::Peer),
     entry("Jolt 5 EPA", Place::Peer),
     entry("ccdMPRPenetrationWarm, pos", Place::Library),
+    entry("ccdMPRIntersect", Place::Library),
 ];
 
 /// Start of a search; in files the degrees by which a guess is off the true direction, `cold` or `warm`.
@@ -198,6 +199,7 @@ fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
         "libccd ccdMPRPenetration" => depth_call(system.ccdMPRPenetration, true),
         "libccd ccdGJKPenetration" => depth_call(system.ccdGJKPenetration, true),
         "libccd ccdMPRIntersect" => yes_no_call(system.ccdMPRIntersect),
+        "ccdMPRIntersect" => yes_no_call(ours.ccdMPRIntersect),
         "ccdMPRPenetration" => depth_call(ours.ccdMPRPenetration, false),
         "ccdMPRPenetration, pos" => depth_call(ours.ccdMPRPenetration, true),
         "ccdGJKPenetration" => depth_call(ours.ccdGJKPenetration, false),

@@ -50,6 +50,9 @@ pub const KINDS: [&str; 8] = [
 ];
 pub const DEPTHS: [&str; 5] = ["shallow", "medium", "deep", "near", "far"];
 
+/// Kinds of bodies on floors, in the order of `c-tests/harness/floor.h`.
+pub const FLOOR_KINDS: [&str; 3] = ["boxes", "round bodies", "hulls of 42 and 162 corners"];
+
 /// Pairs of one kind.
 #[derive(Clone)]
 pub struct Scene {
@@ -86,6 +89,24 @@ impl Scene {
         // SAFETY: any number.
         let pairs = Self::pairs(|poses| unsafe { (libraries.callbacks.sliding)(num_motions, poses) });
         Self { name: "sliding boxes".to_owned(), pairs }
+    }
+
+    /// Makes motions of two frames of a body on a plate, by the half width of the plate, metres: 1 mm deep, or as much above
+    /// it. Guesses are missing.
+    pub fn floor(libraries: &Libraries, kind: usize, half: f64, is_above: bool, num_motions: usize) -> Self {
+        let make = libraries.callbacks.floor;
+        let index = kind.try_into().expect("a small number");
+        // SAFETY: the index is one of the table, which has floor.h's order.
+        let pairs = Self::pairs(|poses| unsafe { make(index, half, is_above.into(), num_motions, poses) });
+        let place = if is_above { "above" } else { "on" };
+        Self { name: format!("{} {place} a plate of {half} m", FLOOR_KINDS[kind]), pairs }
+    }
+
+    /// Returns the pairs of a motion's second frames, for queries without a memory.
+    pub fn second_frames(&self) -> Self {
+        let mut alone = self.clone();
+        alone.pairs.retain(|pair| pair.frame > 0);
+        alone
     }
 
     /// Returns the pairs that a function of callbacks.c makes.

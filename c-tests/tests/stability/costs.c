@@ -4,10 +4,11 @@
 /* Tests guarantees about the cost of a query: support points, bytes of stack. (call_limit in entries.h bounds
  * the slowest query.)
  *
- *   costs [ID]             exits with 1 where a guarantee of the table at the end is broken */
+ *   costs [ID...]          exits with 1 where a guarantee of the table at the end is broken */
 
 #define _GNU_SOURCE /* ucontext.h */
 #include "categories.h"
+#include "harness/floor.h"
 
 #include <ucontext.h>
 
@@ -148,6 +149,25 @@ static void sample_distance(int which, rng_t *d, cost_t *cost)
     cost->points += points_in_state(CALL_DISTANCE, state, &p.a, &p.b, NULL);
 }
 
+/* --- U16: bodies on a floor; their position is not read ----------------------------------------------- */
+
+enum { FLOOR_DEEP, FLOOR_ABOVE, FLOOR_INTERSECT, FLOOR_WIDE };
+
+/* A body of any kind 1 mm deep in, or 1 mm above, a plate of 1 m, or of 20 m. */
+static void sample_floor(int which, rng_t *d, cost_t *cost)
+{
+    static ccd_real_t verts[3 * FLOOR_CORNERS];
+    const int kind = which % FLOOR_WIDE;
+    shape_t plate, body;
+    double normal[3];
+    floor_pair(d, (floor_kind_t)rng_below(d, 3), which < FLOOR_WIDE ? 1 : 20, kind == FLOOR_ABOVE ? 1e-3 : -1e-3, 0, verts,
+               &plate, &body, normal);
+    wanted_outputs = 0;
+    cost->points += points_of(kind == FLOOR_INTERSECT ? CALL_MPR_INTERSECT : CALL_MPR, &plate, &body, NULL);
+    cost->queries++;
+    wanted_outputs = CCD_WANT_ALL;
+}
+
 /* --- U03: stack --------------------------------------------------------------------------------------- */
 
 /* Each call runs on a painted stack of its own; the paint that is gone tells how deep it went. The stack
@@ -257,6 +277,12 @@ static const guarantee_t guarantees[] = {
     {"U15", "distances of balls and capsules, cold", sample_distance, OF_BALLS + DISTANCE_COLD, 4500, 10},
     {"U15", "distances of points and segments with margins", sample_distance, OF_BALLS + DISTANCE_MARGINS, 4500, 2.5},
     {"U15", "distances of balls and capsules, max_distance", sample_distance, OF_BALLS + DISTANCE_LIMITED, 4500, 2. / 3},
+    {"U16", "bodies in a plate of 1 m", sample_floor, FLOOR_DEEP, 4600, 5},
+    {"U16", "bodies above a plate of 1 m", sample_floor, FLOOR_ABOVE, 4600, 5},
+    {"U16", "boolean, bodies in a plate of 1 m", sample_floor, FLOOR_INTERSECT, 4600, 4},
+    {"U16", "bodies in a plate of 20 m", sample_floor, FLOOR_WIDE + FLOOR_DEEP, 4600, 5.5},
+    {"U16", "bodies above a plate of 20 m", sample_floor, FLOOR_WIDE + FLOOR_ABOVE, 4600, 5.5},
+    {"U16", "boolean, bodies in a plate of 20 m", sample_floor, FLOOR_WIDE + FLOOR_INTERSECT, 4600, 4},
 };
 enum { GUARANTEES = sizeof guarantees / sizeof *guarantees, SAMPLES = 300 };
 
@@ -273,12 +299,21 @@ static int is_met(const guarantee_t *g)
     return (double)cost.points <= g->limit * unit;
 }
 
+/* Returns whether the arguments have this ID, or none. */
+static int is_asked(int argc, char **argv, const char *id)
+{
+    int found = argc < 2;
+    for (int i = 1; i < argc; i++)
+        found |= strcmp(id, argv[i]) == 0;
+    return found;
+}
+
 int main(int argc, char **argv)
 {
     int checked = 0, broken = 0;
     catch_crashes();
     for (const guarantee_t *g = guarantees; g < guarantees + GUARANTEES; g++) {
-        if (argc > 1 && strcmp(g->id, argv[1]) != 0)
+        if (!is_asked(argc, argv, g->id))
             continue;
         printf("%-6s%s: ", g->id, g->what);
         fflush(stdout);
@@ -287,7 +322,7 @@ int main(int argc, char **argv)
         broken += !met;
         printf(" -- %s\n", met ? "met" : "FAILED");
     }
-    if (argc < 2 || strcmp("U03", argv[1]) == 0) {
+    if (is_asked(argc, argv, "U03")) {
         checked++;
         broken += check_stack();
     }

@@ -18,7 +18,7 @@ run_programs! {
     /// A sample of every row of bodies that are hard for one method or another.
     hard_bodies: program("judged"), ["hard", &harness::rounds(60)];
     /// Support points and stack of queries.
-    known_costs: program("costs"), if cfg!(feature = "single") { &["U14"][..] } else { &[] };
+    known_costs: program("costs"), if cfg!(feature = "single") { &["U14", "U16"][..] } else { &[] };
     /// The callback that is wrong along the normals of its caps. (Single precision has no tilt.)
     #[cfg(not(feature = "single"))]
     ode_cylinder: programs::source("ode_cylinder").flag("-DOURS_ALONE").link(harness::Link::Static), [""; 0];
