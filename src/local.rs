@@ -796,6 +796,27 @@ mod tests {
         );
     }
 
+    /// The depth is within the tolerance, however close to it the distance of the centers is.
+    #[test]
+    fn nearly_concentric_balls_take_few_support_points() {
+        let mut r = Random::new(26);
+        for round in 0..300 {
+            let finest = if EPSILON < 1e-10 { 1e-9 } else { 1e-3 };
+            let tolerance = [1.0, 10.0, 100.0][round % 3] * finest;
+            let at = r.direction() * (tolerance * r.within(0.1, 3.0));
+            let md = difference(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
+            let settings = Settings {
+                tolerance,
+                ..SETTINGS
+            };
+            let (found, count) = walk(&md, Some(-at), &r.direction(), &settings);
+            let hit = found.unwrap();
+            assert_eq!(hit.status, Status::Converged, "{round}");
+            assert!(count <= 25, "{round}: {count}");
+            assert!((hit.depth - 1.5 + at.norm()).abs() <= tolerance, "{hit:?}");
+        }
+    }
+
     /// The face y = 1 and one tilted by 30 degrees share an edge at x = 0: along y the foot is on the edge, and the
     /// support value decreases to 0.87 towards the normal of the other face.
     #[test]
