@@ -9,8 +9,8 @@
 
 use crate::harness::{Executable, Link, Program, cargo_dir, locked, must_succeed, output_dir, root, run_command};
 use std::collections::BTreeMap;
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::ffi::{OsStr, OsString};
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
@@ -83,12 +83,13 @@ pub struct Method {
     program: Executable,
     /// Its first arguments.
     first: Vec<OsString>,
-    preloaded: Option<PathBuf>,
+    /// In the order of `LD_PRELOAD`.
+    preloaded: Vec<PathBuf>,
 }
 
 impl Method {
     pub fn libccd(name: &'static str, program: Executable) -> Method {
-        Method { name, is_ours: false, program, first: Vec::new(), preloaded: None }
+        Method { name, is_ours: false, program, first: Vec::new(), preloaded: Vec::new() }
     }
 
     pub fn ours(name: &'static str, program: Executable) -> Method {
@@ -106,18 +107,16 @@ impl Method {
         self
     }
 
-    /// Loads a library before the others of the program.
+    /// Loads a library before the others of the program, after those that this was said of before.
     pub fn preload(mut self, library: PathBuf) -> Method {
-        self.preloaded = Some(library);
+        self.preloaded.push(library);
         self
     }
 
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = self.program.command();
         command.args(&self.first).args(arguments.split_whitespace());
-        if let Some(library) = &self.preloaded {
-            preload(&mut command, library);
-        }
+        preload(&mut command, &self.preloaded);
         command
     }
 
@@ -133,13 +132,18 @@ impl Method {
     }
 }
 
-/// Loads a library before the others of a command's program. By its file name: the dynamic linker
-/// splits `LD_PRELOAD` at blanks, which the path may contain.
-fn preload(command: &mut Command, library: &Path) {
-    let mut dirs = vec![library.parent().expect("a file in a directory").to_owned()];
+/// Loads libraries before the others of a command's program. By their file names: the dynamic linker
+/// splits `LD_PRELOAD` at blanks, which a path may contain.
+fn preload(command: &mut Command, libraries: &[PathBuf]) {
+    if libraries.is_empty() {
+        return;
+    }
+    let mut dirs: Vec<_> =
+        libraries.iter().map(|library| library.parent().expect("a file in a directory").to_owned()).collect();
     let own = command.get_envs().find(|(name, _)| *name == "LD_LIBRARY_PATH");
     dirs.extend(own.and_then(|(_, dir)| dir).map(PathBuf::from));
-    command.env("LD_PRELOAD", library.file_name().expect("a file"));
+    let names = libraries.iter().map(|library| library.file_name().expect("a file"));
+    command.env("LD_PRELOAD", names.collect::<Vec<_>>().join(OsStr::new(":")));
     command.env("LD_LIBRARY_PATH", std::env::join_paths(dirs).expect("paths without a colon"));
 }
 
@@ -166,12 +170,21 @@ pub fn compared(program: Program, every: &str) -> [Method; 2] {
     [Method::libccd("libccd", theirs), Method::ours("this library", ours)]
 }
 
-/// Returns FCL's signed distance on libccd, on this library, and on this library with
-/// `libwarmccd-fcl.so` preloaded.
+/// Returns FCL's signed distance, as [`with_fcl_preload`].
 pub fn fcl_distance() -> [Method; 3] {
     // The rows of configurations.h name the fields that they set.
-    let [theirs, ours] = on_both(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"));
-    // As cmake/README.md says; the flags are the tests' own.
+    with_fcl_preload(program("fcl_distance.cpp").flag("-Wno-missing-field-initializers"))
+}
+
+/// Returns a program on libccd, on this library, and on this library with `libwarmccd-fcl.so` preloaded.
+pub fn with_fcl_preload(program: Program) -> [Method; 3] {
+    let [theirs, ours] = on_both(program);
+    let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
+    [theirs, ours, preloaded.preload(fcl_preload())]
+}
+
+/// Builds `libwarmccd-fcl.so` as cmake/README.md says; the flags are the tests' own.
+pub fn fcl_preload() -> PathBuf {
     let build = output_dir().join("fcl");
     let mut cmake = Command::new("cmake");
     cmake
@@ -185,7 +198,5 @@ pub fn fcl_distance() -> [Method; 3] {
     must_succeed(&mut cmake, "cmake");
     must_succeed(Command::new("cmake").arg("--build").arg(&build), "cmake --build");
     drop(lock);
-    let library = build.join("lib/libwarmccd-fcl.so");
-    let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
-    [theirs, ours, preloaded.preload(library)]
+    build.join("lib/libwarmccd-fcl.so")
 }

@@ -117,6 +117,7 @@ LD_LIBRARY_PATH=$PWD/build/lib LD_PRELOAD=libwarmccd-fcl.so ./program
 END
 run "preloading in Python" "^depth 0.100" 's/ python / python3 /' <<'END'
 LD_LIBRARY_PATH=$PWD/target/release LD_PRELOAD=libccd.so python app.py
+LD_LIBRARY_PATH=$PWD/build/lib LD_PRELOAD=libwarmccd-fcl.so:libccd.so.2 python app.py
 END
 run "the precision of a library" "^double" 's|libccd.so.2|target/swap/&|' <<'END'
 objdump -d --disassemble=ccdVec3PointSegmentDist2 libccd.so.2 | grep -qE 'mulss|cvtss2sd|cvtps2pd' && echo single || echo double

@@ -3,7 +3,7 @@
 
 //! Builds the programs that run before a release alone: other consumers of libccd, and FCL collided by `<ccd/fcl.hpp>`.
 
-use super::programs::{Method, on_both, program};
+use super::programs::{Method, fcl_preload, on_both, program};
 use crate::harness::{self, Executable, Link, Precision, must_succeed, output_dir, root};
 use std::process::Command;
 
@@ -39,9 +39,9 @@ pub fn fcl_scene() -> [Method; 4] {
     ]
 }
 
-/// Returns python-fcl's wheel on the libccd that it carries and with this library preloaded; an error where
-/// pip cannot install it.
-pub fn python_wheel() -> Result<[Method; 2], String> {
+/// Returns python-fcl's wheel on the libccd that it carries, with this library preloaded, and its signed distances with
+/// `libwarmccd-fcl.so` too; an error where pip cannot install it.
+pub fn python_wheel() -> Result<[Method; 3], String> {
     let dir = output_dir().join("wheel");
     let python = dir.join("bin/python");
     let try_to = |command: &mut Command| {
@@ -58,6 +58,8 @@ pub fn python_wheel() -> Result<[Method; 2], String> {
     let script = root().join("c-tests/lab/engines/wheel.py");
     let theirs = Method::libccd("the wheel's libccd", python.clone()).first(&script);
     let ours = Method::ours("this library", python).first(&script);
-    let library = harness::library(Precision::Double).dir.join("libccd.so");
-    Ok([theirs, ours.preload(library)])
+    // Its name is the one that `libwarmccd-fcl.so` asks for.
+    let library = harness::library(Precision::Double).dir.join("libccd.so.2");
+    let signed = ours.clone().named("this library and `libwarmccd-fcl.so`").preload(fcl_preload()).first("signed");
+    Ok([theirs, ours.preload(library.clone()), signed.preload(library)])
 }
