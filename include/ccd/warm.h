@@ -166,9 +166,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 /* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
- * Requests pos. Costs, on average, up to 5 support points for a face of up to 4 corners on a larger
- * one, k + 1 for k > 4 corners, 8 for a disc, 12 where neither face contains the other; at most 24.
- * May call one support function without the other.
+ * Requests pos. Costs, on average, 3 to 7 support points where the face of one object contains that of
+ * the other, 9 where neither does; in all tests at most 24. May call one support function without the
+ * other.
  */
 #define CCD_WANT_POS 1
 
@@ -211,11 +211,12 @@ typedef struct ccd_penetration_t {
    * overlap volume, projected along normal to the plane midway between the two support planes; the
    * deeper the overlap, the nearer it is instead to a point between the centers, beside that plane. At
    * most half the depth from both objects, within the tolerance. Root mean square error for objects
-   * of a quarter metre and depths up to a millimetre: 0.1 mm, and at most 0.5 mm, for faces of 3 to
-   * 10 corners on a floor (1 mm and 2 mm in single precision), 3 mm for boxes in any pose, 7 mm for
-   * round objects and discs, 15 mm for a cone on its side; for greater depths 2 % of the smaller
-   * object's radius at a depth of 3 % of it, 6 % at 10 %, 20 % at 30 %. While the normal stays, pos
-   * moves by at most 2 mm more than four times the motion for these faces. With CCD_LIMIT, in
+   * of a quarter metre and depths up to a millimetre: 0.2 mm for faces of 3 to 6 corners, and regular
+   * ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 7 mm for round
+   * objects and discs; 12 mm for flat bars with a curved underside; 15 mm for a cone on its side; in
+   * single precision 1 mm more. For greater depths 2 % of the smaller object's radius at a depth of 3 %
+   * of it, 6 % at 10 %, 20 % at 30 %. In a motion of 0.01 degrees pos of leaning discs jumps by at most
+   * 6 mm, of cones and half balls by 13 mm, of flat bars by up to 55 mm. With CCD_LIMIT, in
    * ccdPenetrationAlong and ccdPenetrationPlanar, the middle of the witness points.
    */
   ccd_vec3_t pos;

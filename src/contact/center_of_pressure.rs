@@ -19,16 +19,16 @@
 //! the deepest point r*, and δ is concave along each ray from there.
 //!
 //! *Steps.*
-//! 1. Find the polygon of the object of smaller extent ([`crate::contact::polygon_search`]). If it is a point, c = r*.
-//! 2. If vertices of the other object in its support plane contain that polygon, the other object is a plane.
-//! 3. Else find the polygon of the other object, as far as it cuts the first one.
-//! 4. Integrate over one fan on a plane, or over two fans, in closed form.
+//! 1. Find the outline of the object of smaller extent ([`crate::contact::outline_search`]). If it is a point, c = r*.
+//! 2. If vertices of the other object in its support plane contain that outline, the other object is a plane.
+//! 3. Else find the outline of the other object, as far as it cuts the first one.
+//! 4. Integrate over one outline on a plane, or over both, in closed form.
 //!
-//! *Integrals.* In a triangle of a fan the drop is linear, and so is w, which is 0 at r* and 1 on the side
-//! opposite to it. Between two consecutive rays from r* through vertices of either fan, w1, w2 and drop1 + drop2
+//! *Integrals.* In the triangle of r* and a side of an outline the drop is linear, and so is w, which is 0 at r* and 1 on
+//! that side. Between two consecutive rays from r* through vertices of either outline, w1, w2 and drop1 + drop2
 //! (in units of d) are linear, and the overlap is where all three are at most 1. So its outline between the rays
 //! consists of one to three sides. Outside each side the surface is not known; it is assumed to be a plane of
-//! slope s, the *flank*. With δ in units of d, a triangle from r* to a side v_i v_j of the outline, of twice the
+//! slope s, the *flank*. With δ in units of d, a triangle from r* to a side v_i v_j of that outline, of twice the
 //! area a and the length L of the side, together with its flank (k = L d / 2 s), has
 //!
 //! ```text
@@ -43,12 +43,11 @@
 //! depth is 1 % of it, 2 to 3 % at 3 %, 6 % at 10 %, and 12 to 18 % at 30 %. For comparison, the middle of the
 //! witness points: 4 to 9, 8 to 17, 15 to 28 and 26 to 41 % (`c-tests/tests/extension/pos.c`).
 
-use crate::contact::fan::{Fan, area2};
-use crate::contact::feature::ContactQuery;
+use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::ContactFrame;
-use crate::contact::limit::Limit;
-use crate::contact::overlap::ContactPolygon;
-use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE, MAX_KNOWN, POINT_REL};
+use crate::contact::outline::{Footprint, Outline, area2};
+use crate::contact::tilted_support::TiltedSupport;
+use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE, MAX_KNOWN};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
@@ -110,16 +109,16 @@ fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
     let depth = larger(hit.depth, tolerance);
     let frame = ContactFrame::new(&hit.normal, &hit.middle());
     let extents = extents(set, &frame.origin, centers);
-    let query = ContactQuery::new(md, frame, extents, [hit.depth, depth]);
-    let mut sum = PressureSum::new(depth, query.vertex_offset);
-    let is_patch = integrate(&query, set, &mut sum)?;
+    let smaller = usize::from(extents[1] < extents[0]);
+    let support = TiltedSupport::new(md, frame, extents[smaller], [hit.depth, depth]);
+    let mut sum = PressureSum::new(depth, support.vertex_offset);
+    let has_area = integrate(&support, smaller, set, &mut sum)?;
     let center = sum.center();
     // Negated for NaN: an empty overlap.
-    if !(is_patch && center.norm_squared() < f64::MAX) {
+    if !(has_area && center.norm_squared() < f64::MAX) {
         return Ok(hit.middle());
     }
-    let sign = if query.smaller == 0 { 1.0 } else { -1.0 };
-    Ok(query.frame.point(center * sign))
+    Ok(frame.point(center))
 }
 
 /// Returns the extents of both objects: the distance of their centers from the contact; without centers that of
@@ -140,74 +139,33 @@ fn extents<const N: usize>(
     })
 }
 
-/// Integrates the local depth of a contact, in the (mirrored, for obj2) frame of the object of smaller extent.
-/// Returns false if the deepest point is the center of pressure.
+/// Integrates the local depth of a contact. Returns false if the deepest point is the center of pressure.
 #[inline(always)]
 fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &ContactQuery<A, B>,
+    support: &TiltedSupport<A, B>,
+    smaller: usize,
     set: &VertexSet<N>,
     sum: &mut PressureSum,
 ) -> Result<bool, Fault> {
-    let (smaller, other) = (query.smaller, 1 - query.smaller % 2);
-    let mut fan = Fan::EMPTY;
-    if build_fan(query, smaller, None, &mut fan)? != Feature::Patch {
+    let mut outline = Outline::EMPTY;
+    if support.find_outline(smaller, None, &mut outline)? == Footprint::Point {
         return Ok(false);
     }
-    let mut limit = Limit::new(fan.outline(), 2.0 * query.vertex_offset);
+    let other = 1 - smaller % 2;
+    let mut face = FlatFace::new(&outline, 2.0 * support.vertex_offset);
     let first_known = set.len().saturating_sub(MAX_KNOWN);
-    query
-        .known(set, other, first_known)
-        .for_each(|v| _ = limit.add(&v));
-    let mut other_fan = Fan::EMPTY;
-    let feature = match limit.is_plane() {
-        true => Feature::Plane,
-        false => build_fan(query, other, Some(&mut limit), &mut other_fan)?,
+    support.for_each_flat(set, other, first_known, |v| _ = face.add(v));
+    let mut other_outline = Outline::EMPTY;
+    let footprint = match face.contains_outline() {
+        true => Footprint::Plane,
+        false => support.find_outline(other, Some(&mut face), &mut other_outline)?,
     };
-    match feature {
-        Feature::Plane => sum.add_fan_on_plane(&fan),
-        Feature::Patch => {
-            other_fan.mirror();
-            sum.add_fans(&fan, &other_fan);
-        }
-        Feature::Point => return Ok(false),
+    match footprint {
+        Footprint::Plane => sum.add_on_plane(&outline),
+        Footprint::Area => sum.add_both(&outline, &other_outline),
+        Footprint::Point => return Ok(false),
     }
     Ok(true)
-}
-
-/// The outline of one object at a contact.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Feature {
-    /// The polygon is a point, or its fan has no area: the deepest point is the center of pressure.
-    Point,
-    /// The fan of its polygon.
-    Patch,
-    /// A plane, as far as the other object reaches.
-    Plane,
-}
-
-/// Finds the polygon of an object and makes its fan.
-///
-/// # Errors
-/// [`Fault::NonFinite`].
-#[inline(never)]
-fn build_fan<A: SupportMap, B: SupportMap>(
-    query: &ContactQuery<A, B>,
-    object: usize,
-    limit: Option<&mut Limit>,
-    fan: &mut Fan,
-) -> Result<Feature, Fault> {
-    let mut corners = ContactPolygon::default();
-    if !query.find_polygon(object, limit, &mut corners)? {
-        return Ok(Feature::Plane);
-    }
-    fan.set(&corners, query.vertex_offset);
-    let [has_size, is_around] = fan.close(POINT_REL * query.extent);
-    let has_area = has_size && (is_around || fan.enclose_deepest_point(query.vertex_offset));
-    Ok(if has_area {
-        Feature::Patch
-    } else {
-        Feature::Point
-    })
 }
 
 /// Returns the point of the outline on the ray through `at`; z: the local depth there, in depths. `bound`: the
@@ -218,11 +176,11 @@ fn outline_at(at: Vec2, bound: f64, drop: f64) -> Vec3 {
     Vec3::new(at.x * scale, at.y * scale, larger(1.0 - drop * scale, 0.0))
 }
 
-/// A ray from the deepest point through a vertex of a fan.
+/// A ray from the deepest point through a vertex of an outline.
 #[derive(Clone, Copy)]
-struct FanRay {
+struct OutlineRay {
     at: Vec2,
-    /// The quantities that are at most 1 in the overlap, at the vertex: w of both fans, and the sum of the drops.
+    /// The quantities that are at most 1 in the overlap, at the vertex: w of both outlines, and the sum of the drops.
     bounds: [f64; 3],
     /// The index of the largest bound.
     active_bound: usize,
@@ -230,7 +188,7 @@ struct FanRay {
     end: Vec3,
 }
 
-impl FanRay {
+impl OutlineRay {
     /// Returns the ray through a vertex above a plane.
     #[inline(always)]
     fn on_plane(v: &Vec3) -> Self {
@@ -243,8 +201,8 @@ impl FanRay {
         }
     }
 
-    /// Returns the ray through vertex `v` of fan `own`, which passes between the vertices `p` and `q` of the other
-    /// fan. `pv`, `vq` and `pq`: the cross products of these vertices.
+    /// Returns the ray through vertex `v` of outline `own`, which passes between the vertices `p` and `q` of the
+    /// other one. `pv`, `vq` and `pq`: the cross products of these vertices.
     #[inline(always)]
     fn new(v: &Vec3, own: usize, [p, q]: [&Vec3; 2], [pv, vq, pq]: [f64; 3]) -> Self {
         let scale = 1.0 / pq;
@@ -270,7 +228,7 @@ impl FanRay {
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
         let t = (a[i] - a[j]) / ((a[i] - a[j]) - (b[i] - b[j]));
-        // Between the rays whatever the rounding: the center is then a mean of points of both fans.
+        // Between the rays whatever the rounding: the center is then a mean of points of both outlines.
         let t = lesser(larger(t, 0.0), 1.0);
         let bounds = [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t);
         let at = self.at + (next.at - self.at) * t;
@@ -320,56 +278,57 @@ impl PressureSum {
         self.moment += v.xy() * weight_v + w.xy() * weight_w;
     }
 
-    /// Adds a fan on a larger plane.
+    /// Adds an outline on a larger plane.
     #[inline(always)]
-    fn add_fan_on_plane(&mut self, fan: &Fan) {
-        let mut rays = fan.vertices.iter().take(fan.len + 1).map(FanRay::on_plane);
-        let Some(mut last) = rays.next() else {
-            return;
-        };
-        for next in rays {
-            self.add_cone(&last, &next);
-            last = next;
+    fn add_on_plane(&mut self, outline: &Outline) {
+        let local_depth = |v: &Vec3| Vec3::new(v.x, v.y, 1.0 - v.z);
+        for (p, q) in outline.sides() {
+            if p.z <= 1.0 && q.z <= 1.0 {
+                self.add(&local_depth(p), &local_depth(q));
+            } else {
+                self.add_cone(&OutlineRay::on_plane(p), &OutlineRay::on_plane(q));
+            }
         }
     }
 
-    /// Adds the overlap of two fans, once around, from vertex to vertex of either. The deepest point must be inside
+    /// Adds the overlap of two outlines, once around, from vertex to vertex of either. The deepest point must be inside
     /// both.
     #[inline(always)]
-    fn add_fans(&mut self, one: &Fan, two: &Fan) {
-        let fans = [one, two];
-        let vertex = |f: usize, i: usize| &fans[f % 2].vertices[i.min(Fan::CAPACITY - 1)];
+    fn add_both(&mut self, one: &Outline, two: &Outline) {
+        let outlines = [one, two];
+        let vertex = |own: usize, i: usize| outlines[own % 2].vertex(i);
         let min_area = self.min_area;
-        let area = |f: usize, i: usize| larger(fans[f % 2].area(i), min_area);
-        // The triangles of both fans that contain the last ray.
+        let area =
+            |own: usize, i: usize| larger(area2(vertex(own, i), vertex(own, i + 1)), min_area);
+        // The triangles of both that contain the last ray.
         let p = vertex(0, 0);
         let contains_ray =
             |i: &usize| area2(vertex(1, *i), p) >= 0.0 && area2(p, vertex(1, *i + 1)) > 0.0;
-        let last = two.len.saturating_sub(1);
+        let last = two.len() - 1;
         let mut at = [0, (0..last).find(contains_ray).unwrap_or(last)];
         let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
         let crosses = [area2(q, p), area2(p, r), area(1, at[1])];
-        let mut last = FanRay::new(p, 0, [q, r], crosses);
-        for _ in 0..one.len + two.len {
+        let mut last = OutlineRay::new(p, 0, [q, r], crosses);
+        for _ in 0..one.len() + two.len() {
             let nexts = [vertex(0, at[0] + 1), vertex(1, at[1] + 1)];
             let turn = area2(nexts[0], nexts[1]);
-            // The fan with the next vertex, counterclockwise.
+            // The outline with the next vertex, counterclockwise.
             let own = usize::from(!(turn > 0.0));
             let other = 1 - own;
             let v = nexts[own];
             let p = vertex(other, at[other]);
             let crosses = [area2(p, v), turn.abs(), area(other, at[other])];
-            let next = FanRay::new(v, own, [p, nexts[other]], crosses);
+            let next = OutlineRay::new(v, own, [p, nexts[other]], crosses);
             self.add_cone(&last, &next);
             last = next;
             let next = at[own] + 1;
-            at[own] = if next < fans[own].len { next } else { 0 };
+            at[own] = if next < outlines[own].len() { next } else { 0 };
         }
     }
 
     /// Adds the overlap between two consecutive rays.
     #[inline(always)]
-    fn add_cone(&mut self, last: &FanRay, next: &FanRay) {
+    fn add_cone(&mut self, last: &OutlineRay, next: &OutlineRay) {
         let (i, j) = (last.active_bound, next.active_bound);
         let mut start = last.end;
         if i != j {
@@ -399,34 +358,34 @@ mod tests {
     use crate::test_shapes::{Random, ball, corners, difference, hull, placed};
     use nalgebra::{Rotation3, Vector3};
 
-    /// Makes a fan of vertices (x, y, drop).
-    fn fan(corners: &[(f64, f64, f64)]) -> Fan {
-        let mut fan = Fan::EMPTY;
+    /// Makes an outline of vertices (x, y, drop).
+    fn outline(corners: &[(f64, f64, f64)]) -> Outline {
+        let mut outline = Outline::EMPTY;
         for &(x, y, drop) in corners {
-            fan.push(Vec3::new(x, y, drop));
+            outline.push(Vec3::new(x, y, drop), 0.0);
         }
-        assert!(fan.close(0.0)[1]);
-        fan
+        assert_eq!(outline.close(0.0, 0.0), Footprint::Area);
+        outline
     }
 
-    /// Returns w and the drop of a fan at a point.
-    fn bounds(fan: &Fan, r: &Vec3) -> [f64; 2] {
-        let mut found = (0..fan.len).filter_map(|i| {
-            let (p, q) = (&fan.vertices[i], &fan.vertices[i + 1]);
-            let (one, two) = (area2(r, q) / fan.area(i), area2(p, r) / fan.area(i));
+    /// Returns w and the drop of an outline at a point.
+    fn bounds(outline: &Outline, r: &Vec3) -> [f64; 2] {
+        let mut found = (0..outline.len()).filter_map(|i| {
+            let (p, q) = (outline.vertex(i), outline.vertex(i + 1));
+            let (one, two) = (area2(r, q) / area2(p, q), area2(p, r) / area2(p, q));
             (one >= 0.0 && two >= 0.0).then_some([one + two, one * p.z + two * q.z])
         });
         found.next().unwrap_or([9.0; 2])
     }
 
-    /// Returns the center of pressure of two fans, by sums over a grid.
-    fn center_by_grid(fans: &[Fan; 2]) -> [f64; 2] {
+    /// Returns the center of pressure of two outlines, by sums over a grid.
+    fn center_by_grid(outlines: &[Outline; 2]) -> [f64; 2] {
         const N: i32 = 400;
         let mut sum = [0.0; 3];
         for (x, y) in (-N..N).flat_map(|x| (-N..N).map(move |y| (x, y))) {
             let [x, y] = [x, y].map(|x| (x as f64 + 0.5) * 1.5 / N as f64);
             let r = Vec3::new(x, y, 0.0);
-            let [[w1, drop1], [w2, drop2]] = [0, 1].map(|i| bounds(&fans[i], &r));
+            let [[w1, drop1], [w2, drop2]] = [0, 1].map(|i| bounds(&outlines[i], &r));
             let depth = 1.0 - drop1 - drop2;
             if w1 <= 1.0 && w2 <= 1.0 && depth > 0.0 {
                 sum = [sum[0] + depth, sum[1] + depth * x, sum[2] + depth * y];
@@ -436,10 +395,10 @@ mod tests {
     }
 
     #[test]
-    fn center_of_two_fans_is_that_of_a_grid() {
+    fn center_of_two_outlines_is_that_of_a_grid() {
         let mut r = Random::new(1);
         for round in 0..40 {
-            let fans = [0, 1].map(|_| {
+            let outlines = [0, 1].map(|_| {
                 let n = 3 + round % 4;
                 let corners: Vec<_> = (0..n)
                     .map(|k| {
@@ -449,11 +408,11 @@ mod tests {
                         (far * x, far * y, r.within(0.0, 1.2))
                     })
                     .collect();
-                fan(&corners)
+                outline(&corners)
             });
             let mut sum = PressureSum::new(1e-9, 1e-9);
-            sum.add_fans(&fans[0], &fans[1]);
-            let ([x, y], [u, v]) = (sum.center().into(), center_by_grid(&fans));
+            sum.add_both(&outlines[0], &outlines[1]);
+            let ([x, y], [u, v]) = (sum.center().into(), center_by_grid(&outlines));
             assert!((x - u).hypot(y - v) < 3e-3, "{round}: {x} {y} {u} {v}");
         }
     }

@@ -6,36 +6,36 @@
 
 /// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
 /// a drop of one depth at that tilt (R T²/2), and all corners are found of a face whose drop grows by 0.7 depths over its
-/// width. Measured: with 1.8 the position of a rolling cylinder jumps by 7 mm and the error of rounded boxes is 1.5 mm in
-/// place of 0.9 mm.
+/// width. Measured (`pos pressure`): with 1.6 the error of a lying cylinder is 7.9 mm in place of 6.9 mm, with 1.2 that of a
+/// lying capsule 7.2 mm in place of 7.0 mm.
 pub const TILT_FACTOR: f64 = 1.4;
 /// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 31, and the first directions of a face have it. With
 /// a larger one surfaces beside a face are taken for it; a smaller one underestimates the size of curved objects.
 pub const MAX_TILT_TAN: f64 = 0.25;
-/// Largest estimated shift of the centroid by a corner that is not searched, relative to the extent. Real shifts are a third
-/// of the estimate, and those of opposite sides cancel. Measured: with 0.018 a recorded hit takes 0.2 support points less, and
-/// faces of nine and ten corners are 0.2 to 0.3 mm off (`pos jumps 10000`).
-pub const CORNER_SHIFT_REL: f64 = 0.015;
-/// Least growth of the overlap by a corner, relative to its volume. Vertices that add less, of a corner that is rounded, would
-/// take the place of other corners. Measured: without it the largest error of bodies with rounded edges is 3.5 mm in place of
-/// 1.9 mm; with 0.004 that of a face of six corners is 0.6 mm, 0.1 mm without it.
-pub const LEAST_GROWTH: f64 = 0.002;
+/// Drop above which a tilt is lowered to the chord's, in depths: at T a surface whose radius is the extent has one. Measured
+/// (`pos pressure`, `pos_flat axes`): with 1.3 the error of a lying capsule is 7.5 mm (7.0 mm), with 2 the position of a cone on
+/// its side jumps by 14 mm (11 mm).
+pub const MAX_DROP: f64 = 1.7;
+/// Largest shift of the mean of an outline's corners by one that is not searched, relative to the size. Measured: with 0.04
+/// positions on faces of eight corners jump, for 0.2 support points less a recorded hit; with 0.02 that hit takes 0.3 more.
+pub const CORNER_SHIFT_REL: f64 = 0.03;
 /// Number of most recent known vertices that may prove a plane.
 pub const MAX_KNOWN: usize = 16;
-/// Largest size of a polygon that counts as a point, relative to the extent. The position is within a quarter of it.
-/// Insensitive: 0.004 to 0.016 tried.
-pub const POINT_REL: f64 = 0.008;
+/// Largest size of an outline that counts as a point, relative to the extent: the position is within a quarter of it.
+/// Insensitive: 0.002 to 0.02 tried.
+pub const POINT_REL: f64 = 0.25 * CORNER_SHIFT_REL;
 /// Largest drop that counts as none, in depths: an error of a third of this fraction of the half width. Insensitive: 0.01 to
 /// 0.1 tried.
 pub const DROP_TOL: f64 = 0.05;
-/// Fraction of the smallest drop of all vertices of a curved surface that is subtracted from each: with radius R the drop is
-/// R T²/2 all around. Measured: with 0 the position of a lying capsule jumps by 5 mm; with 1, exact for spheres, its error
-/// is 7 mm.
+/// Fraction of the least drop of all corners that is subtracted from each: with radius R the drop is R T²/2 all around. Measured
+/// (`pos pressure`): with 0 discs and capsules jump, with 0.6 the error of a lying capsule is 7.1 mm in place of 7.0 mm, with 0.9
+/// that of a lying cylinder 8.1 mm.
 pub const COMMON_DROP_FACTOR: f64 = 0.75;
 /// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest point is inside;
 /// closer vertices are the same. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
 pub const VERTEX_OFFSET_REL: f64 = 1.0 / 512.0;
-/// The assumed slope of flanks. Insensitive: 2 to 8 tried.
+/// The assumed slope of flanks. Insensitive: 1 to 8 tried; without flanks the error of a brick on an edge is 7.6 mm in place of
+/// 3 mm (`pos pressure`).
 pub const FLANK_SLOPE: f64 = 4.0;
 /// Depths, relative to the sum of both objects' extents from their centers along n, from which on the deep position counts,
 /// and from which on it alone does. Measured against the centroid of the overlap: at 0.2 the center of pressure is 4 % of

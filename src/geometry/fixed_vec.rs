@@ -43,18 +43,6 @@ impl<T: Copy + Default, const CAPACITY: usize> FixedVec<T, CAPACITY> {
         i.min(CAPACITY - 1)
     }
 
-    /// Returns element `i`, which must be below the length.
-    #[inline(always)]
-    pub fn at(&self, i: usize) -> &T {
-        &self.all[i.min(CAPACITY - 1)]
-    }
-
-    /// Returns element `i`, mutable; `i` must be below the length.
-    #[inline(always)]
-    pub fn at_mut(&mut self, i: usize) -> &mut T {
-        &mut self.all[i.min(CAPACITY - 1)]
-    }
-
     /// Returns element `i` modulo the length. `i` must be below twice the length.
     pub fn cyclic(&self, i: usize) -> &T {
         &self.all[self.index(i)]
