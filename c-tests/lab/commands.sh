@@ -260,7 +260,7 @@ sh c-tests/test.sh
 cargo fmt --all --check
 cargo clippy --workspace --all-targets -- -D warnings
 sh c-tests/tools/check.sh memcheck contract::
-sh c-tests/compare.sh [--every N] [--swap] [--keep DIR] PROGRAM [ARGUMENT...]
+sh c-tests/compare.sh [--every N] [--runs N] [--limit S] [--swap] [--keep DIR] PROGRAM [ARGUMENT...]
 END
 
 if [ "$wanted" = check ]; then
