@@ -212,6 +212,7 @@ sh c-tests/lab/release.sh LOGS packaging packaging-single
 sh c-tests/lab/fcl_tests.sh
 sh c-tests/lab/libccd_tests.sh
 sh c-tests/lab/ode_demos.sh
+sh c-tests/lab/reasons.sh
 sh c-tests/setup.sh lab
 release.sh LOGS STEP...
 tests.sh SUITE
