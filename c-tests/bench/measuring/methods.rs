@@ -53,7 +53,7 @@ const fn entry(name: &'static str, place: Place) -> Entry {
 }
 
 /// Every method.
-const METHODS: [Entry; 23] = [
+const METHODS: [Entry; 24] = [
     entry("libccd ccdMPRPenetration", Place::Library),
     entry("libccd ccdGJKPenetration", Place::Library),
     entry("libccd ccdMPRIntersect", Place::Library),
@@ -68,6 +68,7 @@ const METHODS: [Entry; 23] = [
     entry("ccdPenetrationProven", Place::Library),
     entry("ccdPenetrationIncremental", Place::Library),
     entry("Algorithm 4/5", Place::PeerInside),
+    entry("Algorithm 4/5, new portals", Place::PeerInside),
     entry("Algorithm 3", Place::PeerInside),
     entry("DEEP", Place::PeerInside),
     entry("Bullet EPA", Place::Peer),

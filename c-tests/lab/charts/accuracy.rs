@@ -25,7 +25,7 @@ pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row>
         let (mut list, mut algorithm_4_5) = (Vec::new(), Vec::new());
         // Metres; libccd's EPA compares squares with it.
         for t in (2..=12).step_by(step).map(|k| 10_f64.powi(-k)) {
-            algorithm_4_5.push(published::method(libraries, true, local, t));
+            algorithm_4_5.push(published::method(libraries, ALGORITHM_4_5, local, t));
             list.extend([
                 ("libccd ccdMPRPenetration", Start::None, t),
                 ("libccd ccdGJKPenetration", Start::None, t),
