@@ -180,4 +180,5 @@ pub const VERTICES: Axis = Axis {
     title: "vertices",
     unit: Unit::Plain,
     value: |row| row.set.strip_prefix('p')?.split('_').next()?.parse().ok(),
+    least: 0.0,
 };
