@@ -154,12 +154,13 @@ fi
 links=$(mktemp -d)
 trap 'rm -rf "$counts" "$links"' EXIT
 ln -s "$work/compare.so" "$links"
-# Under the name libccd.so.2 a library replaces the program's own.
-for side in theirs ours; do
-    mkdir "$counts/$side" "$links/$side"
-    cp "$counts/$side.so" "$counts/$side/libccd.so.2"
-    ln -s "$counts/$side/libccd.so.2" "$links/$side"
-done
+# on SIDE FILE: makes a library ready to be preloaded; under the name libccd.so.2 it replaces the program's own
+on() {
+    mkdir "$counts/$1" "$links/$1"
+    cp -L "$2" "$counts/$1/libccd.so.2"
+    ln -s "$counts/$1/libccd.so.2" "$links/$1"
+}
+on ours "$library"
 preload=$links/compare.so
 [ "$base" = theirs ] || preload="$preload $links/ours/libccd.so.2"
 shift
@@ -172,7 +173,7 @@ limited() {
         trap : INT
         "$@" || code=$?
     else
-        timeout -k 5 "$limit" "$@" <&3 &
+        timeout -k 5 "$limit" "$@" <&3 3<&- &
         run=$!
         trap 'stopped=1; kill "$run"' INT
         wait "$run" || code=$?
@@ -183,10 +184,8 @@ limited() {
 }
 
 stopped=
-if [ -t 0 ]; then
-    exec 3</dev/null # that group may not read from the terminal
-else
-    exec 3<&0
+if [ -n "$limit" ]; then
+    if [ -t 0 ]; then exec 3</dev/null; else exec 3<&0; fi # that group may not read from the terminal
 fi
 limited env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$libccd" \
     CCD_COMPARE_OURS="$counts/ours.so" CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" \
@@ -206,8 +205,12 @@ measure() {
 
 : >"$counts/runs"
 i=0
-[ ! -e "$counts/counts" ] || [ "$runs" -eq 0 ] || echo "compare.sh: $runs runs on each library, each for at most $limit s" >&2
-while [ -e "$counts/counts" ] && [ $i -lt "$runs" ] && [ -z "$stopped" ]; do
+[ -e "$counts/counts" ] || runs=0
+if [ "$runs" -gt 0 ]; then
+    on theirs "$("$work/screen" "$counts" libccd)"
+    echo "compare.sh: $runs runs on each library, each for at most $limit s" >&2
+fi
+while [ $i -lt "$runs" ] && [ -z "$stopped" ]; do
     # Each is the first of two in turn.
     for side in $([ $((i % 2)) -eq 0 ] && echo theirs ours || echo ours theirs); do
         [ -n "$stopped" ] || measure "$side" "$@"

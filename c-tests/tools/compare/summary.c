@@ -5,6 +5,7 @@
  *
  * usage: screen DIR EVERY EXIT SAVED LIMIT   the screen; SAVED: the folder of wrong answers, or empty; LIMIT: seconds, or 0
  *        screen DIR fields                   `counted key value key value ...`, for the tables of engines/
+ *        screen DIR libccd                   the path of the libccd that was compared with
  * DIR/runs has a line for each run of the program alone: its library, exit code, nanoseconds. */
 
 #include "tools/compare/counts.h"
@@ -310,10 +311,12 @@ static void print_screen(const char *every, const char *code, compare_call_t *su
 {
     const char *who = all.base == COMPARE_THEIRS ? "libccd" : "this library";
     printf("\n== %s, exit code %s, on the answers of %s; ", all.program, code, who);
-    if (strcmp(every, "0") != 0)
-        printf("one query in %s judged", every);
-    else
+    if (strcmp(every, "0") == 0)
         printf("none was judged");
+    else if (strcmp(every, "1") == 0)
+        printf("every query judged");
+    else
+        printf("one query in %s judged", every);
     if (all.processes > 1)
         printf("; %d processes", (int)all.processes);
     printf("\n   libccd: %s\n   this library: %s\n\n", all.theirs, all.ours);
@@ -363,7 +366,7 @@ int main(int argc, char **argv)
 {
     char path[4096];
     if (argc != 3 && argc != 6) {
-        fprintf(stderr, "usage: screen DIR EVERY EXIT SAVED LIMIT | screen DIR fields\n");
+        fprintf(stderr, "usage: screen DIR EVERY EXIT SAVED LIMIT | screen DIR fields | screen DIR libccd\n");
         return 2;
     }
     snprintf(path, sizeof path, "%s/counts", argv[1]);
@@ -372,7 +375,9 @@ int main(int argc, char **argv)
         all.processes = 0;
     if (file)
         fclose(file);
-    if (argc == 3)
+    if (argc == 3 && strcmp(argv[2], "libccd") == 0)
+        printf("%s\n", all.theirs);
+    else if (argc == 3)
         print_fields();
     else if (all.processes) {
         static compare_call_t sum;
