@@ -8,12 +8,14 @@
 #     --every N    judge one query in N (default 10; 0: only count them)
 #     --swap       give the program this library's answers, not libccd's
 #     --keep DIR   write the worst wrong answers there, as files for replay.sh
-#     --no-times   measure no times: fewer calls of the callbacks
+#     --runs N     then run the program N times on each library, in turn, without all this, and compare its times
+#     --limit S    end each run after S seconds (default with --runs: 120): some programs hang on libccd
+#     --no-times   time no queries: fewer calls of the callbacks
 #     --libccd F   the libccd to compare with (default: the program's; where that is this library, the system's)
 #     --library F  a built libccd.so of this library (default: built now)
 #     --recorder D  a folder with this script's own programs (default: compiled now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART, or load it later, as in `compare.sh python
-# app.py`. Its exit code is this command's; 125: the program could not be run. Runs setup.sh itself.
+# app.py`. Its exit code is this command's; 124: it did not end in time; 125: it could not be run. Runs setup.sh itself.
 
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -29,6 +31,8 @@ usage() {
 }
 
 every=10
+runs=0
+limit=
 base=theirs
 keep=
 libccd=
@@ -42,7 +46,7 @@ while [ $# -gt 0 ]; do
     --swap) base=ours ;;
     --no-times) times=0 ;;
     --fields) fields=1 ;; # for the tables of engines/: one line on stdout
-    --every | --keep | --libccd | --library | --recorder)
+    --every | --runs | --limit | --keep | --libccd | --library | --recorder)
         [ $# -ge 2 ] || usage
         eval "${1#--}=\$2"
         shift
@@ -57,9 +61,13 @@ while [ $# -gt 0 ]; do
     shift
 done
 [ $# -gt 0 ] || usage
-case $every in
-'' | *[!0-9]*) fail "--every takes a number, not '$every'" ;;
-esac
+for number in "--every $every" "--runs $runs" "--limit ${limit:-1}"; do
+    case ${number#* } in
+    '' | *[!0-9]*) fail "${number%% *} takes a number, not '${number#* }'" ;;
+    esac
+done
+[ "${limit:-1}" -gt 0 ] || fail "--limit takes at least 1 second"
+[ "$runs" -eq 0 ] || limit=${limit:-120}
 
 program=$(command -v -- "$1") || fail "$1: no such program"
 case $program in
@@ -134,7 +142,6 @@ counts=$(mktemp -d "$work/run.XXXXXX" 2>/dev/null) || counts=$(mktemp -d)
 trap 'rm -rf "$counts"' EXIT
 cp -L "$libccd" "$counts/theirs.so"
 cp -L "$library" "$counts/ours.so"
-cp "$counts/ours.so" "$counts/libccd.so.2" # for the program itself
 if [ -n "$keep" ]; then
     mkdir -p "$keep"
     keep=$(cd "$keep" && pwd)
@@ -146,25 +153,77 @@ fi
 # LD_PRELOAD is split at blanks and colons, which a path may have.
 links=$(mktemp -d)
 trap 'rm -rf "$counts" "$links"' EXIT
-ln -s "$work/compare.so" "$counts/libccd.so.2" "$links"
+ln -s "$work/compare.so" "$links"
+# on SIDE FILE: makes a library ready to be preloaded; under the name libccd.so.2 it replaces the program's own
+on() {
+    mkdir "$counts/$1" "$links/$1"
+    cp -L "$2" "$counts/$1/libccd.so.2"
+    ln -s "$counts/$1/libccd.so.2" "$links/$1"
+}
+on ours "$library"
 preload=$links/compare.so
-# Under its name libccd.so.2 it replaces the program's own.
-[ "$base" = theirs ] || preload="$preload $links/libccd.so.2"
+[ "$base" = theirs ] || preload="$preload $links/ours/libccd.so.2"
 shift
-code=0
-# An interrupt ends the program, not this script, which prints the screen.
-trap : INT
-env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$libccd" CCD_COMPARE_OURS="$counts/ours.so" \
-    CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" CCD_COMPARE_KEEP="$keep" \
-    LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@" || code=$?
-trap - INT
+
+# limited COMMAND...: runs it, if there is a limit in a process group of its own that ends with it, and sets `code`. An
+# interrupt ends the program, not this script, which prints the screen.
+limited() {
+    code=0
+    if [ -z "$limit" ]; then
+        trap : INT
+        "$@" || code=$?
+    else
+        timeout -k 5 "$limit" "$@" <&3 3<&- &
+        run=$!
+        trap 'stopped=1; kill "$run"' INT
+        wait "$run" || code=$?
+        # The interrupt ended the waiting alone.
+        [ -z "$stopped" ] || wait "$run" || code=$?
+    fi
+    trap - INT
+}
+
+stopped=
+if [ -n "$limit" ]; then
+    if [ -t 0 ]; then exec 3</dev/null; else exec 3<&0; fi # that group may not read from the terminal
+fi
+limited env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$libccd" \
+    CCD_COMPARE_OURS="$counts/ours.so" CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" \
+    CCD_COMPARE_KEEP="$keep" LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@"
+own_code=$code
+
+# measure SIDE ARGUMENT...: runs the program on a library and notes its exit code and nanoseconds; not once more where it
+# did not end
+measure() {
+    side=$1
+    shift
+    ! grep -q "^$side \(124\|137\) " "$counts/runs" || return 0
+    start=$(date +%s%N)
+    limited env LD_PRELOAD="$links/$side/libccd.so.2${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@" >/dev/null 2>&1
+    [ -n "$stopped" ] || echo "$side $code $(($(date +%s%N) - start))" >>"$counts/runs"
+}
+
+: >"$counts/runs"
+i=0
+[ -e "$counts/counts" ] || runs=0
+if [ "$runs" -gt 0 ]; then
+    on theirs "$("$work/screen" "$counts" libccd)"
+    echo "compare.sh: $runs runs on each library, each for at most $limit s" >&2
+fi
+while [ $i -lt "$runs" ] && [ -z "$stopped" ]; do
+    # Each is the first of two in turn.
+    for side in $([ $((i % 2)) -eq 0 ] && echo theirs ours || echo ours theirs); do
+        [ -n "$stopped" ] || measure "$side" "$@"
+    done
+    i=$((i + 1))
+done
 
 if [ -n "$fields" ]; then
     "$work/screen" "$counts" fields || true
-elif ! "$work/screen" "$counts" "$every" "$code" "$keep" >&2; then
+elif ! "$work/screen" "$counts" "$every" "$own_code" "$keep" "${limit:-0}" >&2; then
     case $linked in
     no) echo "compare.sh: $program did not query libccd: it is not linked to libccd.so.2 and did not load it" >&2 ;;
     *) echo "compare.sh: $program did not query libccd in this run" >&2 ;;
     esac
 fi
-exit "$code"
+exit "$own_code"

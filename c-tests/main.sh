@@ -39,11 +39,11 @@ figures='
     }
     / of them overlap/ { pairs = $5; overlaps = $7; lines = 0 }
     /^a support point alone/ { $5 = least(cost, FILENAME, $5) }
-    NF > 10 && $NF ~ /^[0-9]+$/ { # a method: a name of 17 columns, then 10 figures
+    NF > 11 && $NF ~ /^[0-9]+$/ { # a method: a name of 17 columns, then 11 figures
         name = substr($0, 1, 17)
         sub(/ +$/, "", name)
         n = FILENAME SUBSEP name
-        wrong[n] = $(NF - 9) + $(NF - 8) + $(NF - 7) + $(NF - 6) + $(NF - 5)
+        wrong[n] = $(NF - 10) + $(NF - 9) + $(NF - 8) + $(NF - 7) + $(NF - 6) + $(NF - 5)
         supports[n] = $(NF - 2)
         $0 = sprintf("%s %5s %5s", substr($0, 1, length($0) - 12), least(hit, n, $(NF - 1)), least(ns, n, $NF))
     }
@@ -98,8 +98,8 @@ cat <<'END'
 
 missed    overlaps that are not found       deep      more than 1 % too deep
 false     pairs apart that are hits         unsound   the move does not separate
-broken    NaN or a direction of no length   mean max  errors of the depth
-supports  support points a query: one call of both support functions each
+broken    NaN or a direction of no length   dir       the depth along it is so much above the least
+supports  support points a query: one call of both support functions each; mean max: errors of the depth
 hit ns    nanoseconds a query of the pairs that overlap, and of all; best of turns
 
 END

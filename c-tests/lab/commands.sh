@@ -95,10 +95,11 @@ END
 run "the example for FCL" "3.0 mm deep" "" <<'END'
 g++ -O2 -Iinclude -I/usr/include/eigen3 c-tests/examples/fcl.cpp target/swap/libccd.so.2 -Wl,-rpath,"$PWD/target/swap" -lfcl && ./a.out
 END
-run "the main job" "^Wrong results of ccdMPRPenetration: 6.. with libccd, 0 with" "" <<'END'
+run "the main job" "^Wrong results of ccdMPRPenetration: 12.. with libccd, 0 with" "" <<'END'
 sh c-tests/main.sh
 END
 run "a program on both libraries" "^this library " 's/PROGRAM/.\/program/; s/DIR/kept/' <<'END'
+sh c-tests/compare.sh --runs 5 ./program
 sh c-tests/compare.sh ./program
 sh c-tests/compare.sh PROGRAM
 sh c-tests/compare.sh --keep DIR ./program
@@ -213,6 +214,7 @@ sh c-tests/lab/release.sh LOGS packaging packaging-single
 sh c-tests/lab/fcl_tests.sh
 sh c-tests/lab/libccd_tests.sh
 sh c-tests/lab/ode_demos.sh
+sh c-tests/lab/reasons.sh
 sh c-tests/setup.sh lab
 release.sh LOGS STEP...
 tests.sh SUITE
@@ -261,7 +263,7 @@ sh c-tests/test.sh
 cargo fmt --all --check
 cargo clippy --workspace --all-targets -- -D warnings
 sh c-tests/tools/check.sh memcheck contract::
-sh c-tests/compare.sh [--every N] [--swap] [--keep DIR] PROGRAM [ARGUMENT...]
+sh c-tests/compare.sh [--every N] [--runs N] [--limit S] [--swap] [--keep DIR] PROGRAM [ARGUMENT...]
 END
 
 if [ "$wanted" = check ]; then

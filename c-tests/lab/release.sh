@@ -53,6 +53,8 @@ step fcl-single cargo test -p lab --features single fcl::
 step fcl-address sh c-tests/tools/check.sh address -p lab --test lab fcl::
 step fcl-tests sh c-tests/lab/fcl_tests.sh
 step libccd-tests sh c-tests/lab/libccd_tests.sh
+step price cargo test -p lab price::
+step reasons sh c-tests/lab/reasons.sh
 step ode-demos sh c-tests/lab/ode_demos.sh
 step miri cargo test -p lab miri::
 step simulations cargo test --no-fail-fast -p lab simulations::

@@ -7,7 +7,9 @@
 #   run-on-warmccd.sh [OPTION...] PROGRAM [ARGUMENT...]
 #     --every N    judge one query in N (default 10; 0: only count them)
 #     --keep DIR   write the worst wrong answers there
-#     --no-times   measure no times: fewer calls of the callbacks
+#     --runs N     then run the program N times on each library, in turn, and compare its times
+#     --limit S    end each run after S seconds
+#     --no-times   time no queries: fewer calls of the callbacks
 #     --libccd F   the libccd to compare with (default: the program's)
 # Without the comparison: LD_LIBRARY_PATH=THIS-FOLDER/lib PROGRAM
 

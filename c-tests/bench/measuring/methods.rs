@@ -68,6 +68,7 @@ const METHODS: [Entry; 24] = [
     entry("ccdPenetrationProven", Place::Library),
     entry("ccdPenetrationIncremental", Place::Library),
     entry("Algorithm 4/5", Place::PeerInside),
+    entry("Algorithm 4/5, new portals", Place::PeerInside),
     entry("Algorithm 3", Place::PeerInside),
     entry("DEEP", Place::PeerInside),
     entry("Bullet EPA", Place::Peer),

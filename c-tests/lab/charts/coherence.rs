@@ -48,7 +48,7 @@ pub fn measure(libraries: &Libraries, is_quick: bool) -> Vec<Row> {
         eprintln!("coherence: {set}");
         let scene = Scene::load(libraries, &set, num_poses);
         let methods = METHODS.iter().flat_map(|&(name, start)| match name {
-            ALGORITHM_4_5 => vec![published::method(libraries, true, start, TOLERANCE)],
+            ALGORITHM_4_5 => vec![published::method(libraries, name, start, TOLERANCE)],
             _ => select(libraries, &[(name, start, TOLERANCE)]),
         });
         times::runner(libraries, repetitions).rows(&scene, methods.collect())

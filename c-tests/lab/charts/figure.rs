@@ -28,26 +28,32 @@ pub enum Unit {
 /// The place of 0 on an axis of shares, percent.
 pub const NONE: f64 = 0.003;
 
-/// An axis, and the value of a row; none where it was not measured.
+/// An axis, and the value of a row; none where it was not measured. Smaller values than `least` stand there.
 #[derive(Clone, Copy)]
 pub struct Axis {
     pub title: &'static str,
     pub unit: Unit,
     pub value: fn(&Row) -> Option<f64>,
+    pub least: f64,
+}
+
+impl Axis {
+    fn of(&self, row: &Row) -> Option<f64> {
+        (self.value)(row).map(|value| value.max(self.least))
+    }
 }
 
 pub const SUPPORTS: Axis =
-    Axis { title: "support points per query", unit: Unit::Plain, value: |row| Some(row.supports) };
+    Axis { title: "support points per query", unit: Unit::Plain, value: |row| Some(row.supports), least: 0.0 };
 pub const TIME: Axis =
-    Axis { title: "time per query, µs", unit: Unit::Plain, value: |row| row.ns.map(|ns| 1e-3 * ns) };
+    Axis { title: "time per query, µs", unit: Unit::Plain, value: |row| row.ns.map(|ns| 1e-3 * ns), least: 0.0 };
 
-/// A line for each method and start of the rows, through its rows as they come; and a line across at an x.
+/// A line for each method and start of the rows, through its rows as they come.
 pub struct Panel<'a> {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
     pub rows: Vec<&'a Row>,
-    pub limit: Option<f64>,
 }
 
 type Drawn = Result<(), Box<dyn std::error::Error>>;
@@ -94,25 +100,25 @@ struct Style {
     mark: Mark,
 }
 
-/// Returns the style of a method's line: colours of Okabe and Ito, whose lightness differs, and beside it dashes, marks and
-/// width, so that lines differ without colour too. This library's are thick.
+/// Returns the style of a method's line: this library's are thick and blue, the others' have other colours of Okabe and Ito;
+/// lightness, dashes, marks and width differ too, so that lines differ without colour.
 fn style(row: &Row) -> Style {
+    const NAVY: RGBColor = RGBColor(0, 52, 94);
     const BLUE: RGBColor = RGBColor(0, 114, 178);
-    const VERMILION: RGBColor = RGBColor(213, 94, 0);
+    const SKY: RGBColor = RGBColor(86, 180, 233);
     const GREEN: RGBColor = RGBColor(0, 158, 115);
     const PURPLE: RGBColor = RGBColor(204, 121, 167);
-    const SKY: RGBColor = RGBColor(86, 180, 233);
     const ORANGE: RGBColor = RGBColor(230, 159, 0);
     const GREY: RGBColor = RGBColor(110, 110, 110);
     let (color, dashes, mark) = match &*row.method {
         "ccdMPRPenetration" => (BLUE, None, Mark::Circle),
         "ccdMPRPenetrationWarm" => (BLUE, Some((9, 4)), Mark::Square),
-        "ccdPenetrationProven" | "ccdPenetration" | "ccdGJKPenetration" => (BLACK, None, Mark::Triangle),
-        method if method.starts_with("ccdPenetrationLocal") => (VERMILION, None, Mark::Square),
+        "ccdPenetrationProven" | "ccdPenetration" | "ccdGJKPenetration" => (NAVY, None, Mark::Triangle),
+        method if method.starts_with("ccdPenetrationLocal") => (SKY, None, Mark::Square),
         "libccd ccdMPRPenetration" => (ORANGE, Some((9, 4)), Mark::Triangle),
         "libccd ccdGJKPenetration" => (PURPLE, Some((4, 3)), Mark::Square),
         "Algorithm 3" => (GREEN, Some((9, 4)), Mark::Triangle),
-        "ccdPenetrationIncremental" => (SKY, None, Mark::Circle),
+        "ccdPenetrationIncremental" => (NAVY, Some((9, 4)), Mark::Circle),
         "Algorithm 4/5" => (GREEN, None, Mark::Circle),
         "DEEP" => (PURPLE, Some((4, 3)), Mark::Triangle),
         _ => (GREY, None, Mark::Cross),
@@ -233,7 +239,7 @@ fn draw_mark(root: &Root, at: Pixel, style: &Style) -> Drawn {
 
 /// Draws the lines of a panel, and their names.
 fn draw(panel: &Panel, root: &Root, area: &Root) -> Drawn {
-    let point = |row: &&Row| (panel.x.value)(row).zip((panel.y.value)(row)).filter(|p| p.0 > 0.0 && p.1 > 0.0);
+    let point = |row: &&Row| panel.x.of(row).zip(panel.y.of(row)).filter(|p| p.0 > 0.0 && p.1 > 0.0);
     let points = || panel.rows.iter().filter_map(point);
     let (xs, ys) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
     let gutter = if panel.x.unit == Unit::Plain { GUTTER } else { NARROW };
@@ -252,15 +258,15 @@ fn draw(panel: &Panel, root: &Root, area: &Root) -> Drawn {
     mesh.light_line_style(TRANSPARENT).bold_line_style(BLACK.mix(0.12)).label_style(font(SMALL));
     mesh.axis_desc_style(font(SMALL + 1)).x_label_formatter(&x_text).y_label_formatter(&y_text);
     mesh.x_desc(panel.x.title).y_desc(panel.y.title).draw()?;
-    if let Some(limit) = panel.limit.filter(|limit| xs.contains(limit)) {
-        chart.draw_series(DashedLineSeries::new([(limit, ys.start), (limit, ys.end)], 2, 4, BLACK.into()))?;
-    }
     // From here on in pixels of the picture.
     let pixel = |p: (f64, f64)| chart.backend_coord(&p);
     let mut lines: Vec<(&Row, Vec<Pixel>)> = Vec::new();
     for row in &panel.rows {
-        let Some(p) = point(row).map(pixel) else { continue };
+        let Some(at) = point(row) else { continue };
+        let p = pixel(at);
         match lines.iter_mut().find(|(first, _)| (&first.method, first.start) == (&row.method, row.start)) {
+            // A line ends at its first point at the end of the axis.
+            Some((_, line)) if at.0 <= panel.x.least && line.last().is_some_and(|last| last.0 == p.0) => {}
             Some((_, line)) => line.push(p),
             None => lines.push((row, vec![p])),
         }
@@ -314,7 +320,7 @@ fn draw(panel: &Panel, root: &Root, area: &Root) -> Drawn {
 
 /// Draws panels side by side, so many in a row, and the notes below.
 pub fn grid(path: &Path, title: &str, columns: usize, mut panels: Vec<Panel>, notes: &[String]) -> Drawn {
-    panels.retain(|panel| panel.rows.iter().any(|row| (panel.x.value)(row).and((panel.y.value)(row)).is_some()));
+    panels.retain(|panel| panel.rows.iter().any(|row| panel.x.of(row).and(panel.y.of(row)).is_some()));
     let rows = panels.len().div_ceil(columns);
     let size = if columns == 1 { (900, 520) } else { (570, 320) };
     let (top, below) = (size.1 * rows as u32, 12 + 18 * notes.len() as u32);

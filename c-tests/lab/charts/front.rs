@@ -9,8 +9,8 @@ use super::figure::{self, Axis, NONE, Panel, TIME, Unit};
 use crate::measuring::measure::Row;
 
 pub fn draw(path: &Path, machine: &str, rows: &[Row]) {
-    const WRONG: Axis = Axis { title: "wrong answers", unit: Unit::Share, value: |row| Some(row.wrong.max(NONE)) };
-    let panel = Panel { title: String::new(), x: WRONG, y: TIME, rows: rows.iter().collect(), limit: None };
+    const WRONG: Axis = Axis { title: "wrong answers", unit: Unit::Share, value: |row| Some(row.wrong), least: NONE };
+    let panel = Panel { title: String::new(), x: WRONG, y: TIME, rows: rows.iter().collect() };
     let notes = [
         "left: fewer wrong answers, down: cheaper; wrong: missed, or depth or direction off by more than 1 % + 2 µm"
             .to_owned(),

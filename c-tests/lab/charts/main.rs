@@ -14,7 +14,7 @@ mod pages;
 #[path = "../paper/mod.rs"]
 mod paper;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use measuring::ledger::{self, Cost};
 use measuring::libraries::Libraries;
@@ -23,8 +23,9 @@ use measuring::{callgrind, csv};
 
 const USAGE: &str = "\
 usage: cargo bench -p lab -- COMMAND
-  charts [--quick]  speed against accuracy, as CSV and SVG, and the page
-  paper [--quick]   the tables and figures of W. Gao's paper, as CSV and SVG, and their page
+  charts            speed against accuracy, as CSV and SVG, and the page
+  paper             the tables and figures of W. Gao's paper, as CSV and SVG, and their page
+  charts --quick, paper --quick   the same of fewer poses, in target/quick, beside what is published
   redraw            the pictures and their pages from the CSV files that are there
   record            the support counts, errors, instructions and mispredictions that a test judges
   engines           this library beside other engines on recorded contacts; downloads what it can";
@@ -36,9 +37,9 @@ fn main() {
     match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["record"] => record(),
         ["charts"] => charts::run(out, false),
-        ["charts", "--quick"] => charts::run(out, true),
+        ["charts", "--quick"] => charts::run(&quick("charts"), true),
         ["paper"] => paper::run(Path::new(paper::OUT), false),
-        ["paper", "--quick"] => paper::run(Path::new(paper::OUT), true),
+        ["paper", "--quick"] => paper::run(&quick("paper"), true),
         ["redraw"] => {
             charts::redraw(out);
             paper::redraw(Path::new(paper::OUT));
@@ -49,6 +50,14 @@ fn main() {
             std::process::exit(2);
         }
     }
+}
+
+/// Makes and names the folder of a quick run.
+fn quick(name: &str) -> PathBuf {
+    let out = harness::output_dir().with_file_name("quick").join(name);
+    std::fs::create_dir_all(&out).expect("a folder");
+    println!("{}", out.display());
+    out
 }
 
 /// Writes both files anew from what is measured now, and prints the costs that are above what is allowed.

@@ -26,7 +26,7 @@ fn quick_charts_are_whole_and_sound() {
             assert!(row.missed == 0.0 && row.shallow == 0.0, "{row:?}");
         }
     }
-    for name in ["accuracy_supports", "accuracy_time", "frames_supports", "frames_time", "front"] {
+    for name in ["accuracy", "accuracy_supports", "accuracy_time", "frames_supports", "frames_time", "front"] {
         let path = out.path().join(name).with_extension("svg");
         let picture = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"), "{}", path.display());

@@ -20,7 +20,9 @@
  *   nothing      no query
  *   exit         exits with 7 after its queries
  *   abort        aborts after its queries
- *   _exit        exits with 3, without any clearing up */
+ *   _exit        exits with 3, without any clearing up
+ *   hang         a child that it waits for does not end on libccd
+ *   crash        aborts after its queries on libccd */
 
 #include "harness/identity.h"
 #include "harness/shapes.h"
@@ -199,7 +201,10 @@ int main(int argc, char **argv)
     }
     printf("results hits %ld left %ld depth %.9g uncaught %d\n", of[0].hits, of[0].left, of[0].depth, std::uncaught_exceptions());
     fflush(stdout);
-    if (mode == "abort")
+    if (mode == "hang" && !running_ccd() && (fork() == 0 || wait(NULL)))
+        for (;;)
+            pause();
+    if (mode == "abort" || (mode == "crash" && !running_ccd()))
         abort();
     if (mode == "_exit")
         _exit(3);

@@ -10,6 +10,7 @@
 //! `cargo run --release -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --release -p lab --bin engines -- steps` a step of whole programs on both libraries (2 minutes)
 //! `cargo run --release -p lab --bin engines -- long` whole simulations, longer and harder (3 minutes)
+//! `cargo run --release -p lab --bin engines -- price` the front page's price, of the pages' tables, as `fcl` and `steps` too
 
 #[path = "mod.rs"]
 mod engines;
@@ -19,6 +20,7 @@ mod harness;
 mod pages;
 
 use engines::consumers::{self, CONSUMERS};
+use engines::price;
 use engines::programs::{compared, fcl_distance, program, run_all};
 use engines::results;
 use engines::tables::{self, Simulation, simulate};
@@ -83,6 +85,7 @@ fn steps() {
     let table = format!("{}\n\n{}.\n", tables::step_table(3, 8), harness::machine());
     println!("{table}");
     write_between_marks("include/README.md", "steps", &table);
+    price::write();
 }
 
 /// Prints what FCL costs by use, and writes it into the page of the engines.
@@ -91,6 +94,7 @@ fn fcl() {
     let table = format!("\n{}\n\n{}.\n", tables::fcl_table(&costs), harness::machine());
     println!("{table}");
     write_between_marks("c-tests/engines/README.md", "fcl", &table);
+    price::write();
 }
 
 fn main() {
@@ -103,8 +107,9 @@ fn main() {
         Some("fcl") => fcl(),
         Some("screens") => screens(),
         Some("steps") => steps(),
+        Some("price") => price::write(),
         Some(other) => {
-            eprintln!("unknown: {other}; nothing, `distance`, `fcl`, `screens`, `steps` or `long`");
+            eprintln!("unknown: {other}; nothing, `distance`, `fcl`, `screens`, `steps`, `price` or `long`");
             std::process::exit(2);
         }
     }

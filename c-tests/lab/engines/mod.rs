@@ -7,6 +7,7 @@
 #![allow(dead_code)]
 
 pub mod consumers;
+pub mod price;
 #[path = "../../engines/programs.rs"]
 pub mod programs;
 #[path = "../../engines/results.rs"]

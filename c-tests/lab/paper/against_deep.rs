@@ -34,9 +34,9 @@ pub fn draw(path: &Path, rows: &[Row], notes: &[String]) {
         title: "answers more than 1 mm too deep, %",
         unit: Unit::Plain,
         value: |row| (row.nonminimal > 0.0).then_some(row.nonminimal),
+        least: 0.0,
     };
-    let panel =
-        |title: &str, y| Panel { title: title.to_owned(), x: VERTICES, y, rows: rows.iter().collect(), limit: None };
+    let panel = |title: &str, y| Panel { title: title.to_owned(), x: VERTICES, y, rows: rows.iter().collect() };
     let panels = vec![panel("time", TIME), panel("other local minima", BEYOND)];
     figure::grid(path, "Two hulls of spheres, guesses 5° off", 2, panels, notes).expect("a picture");
 }

@@ -4,7 +4,7 @@
 //! What Tables I to III are made of: spheres and capsules of 1 m, each method from guesses 5°, 25° and 45° off.
 
 use super::poses::{self, Poses, Shape};
-use super::{ALGORITHM_4_5, EPA, Evaluation, INCREMENTAL, find, number};
+use super::{ALGORITHM_4_5, EPA, Evaluation, INCREMENTAL, NEW_PORTALS, find, number};
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::Start;
@@ -39,7 +39,8 @@ pub fn poses(libraries: &Libraries, number: usize) -> Vec<Poses> {
 }
 
 pub fn measure(evaluation: &Evaluation, poses: &[Poses]) -> Vec<Row> {
-    let rows = |poses: &Poses| evaluation.runner().rows(&poses.scene, evaluation.methods(&COLUMNS));
+    let list = [&COLUMNS[..], &[(NEW_PORTALS, Start::Guess5)]].concat();
+    let rows = |poses: &Poses| evaluation.runner().rows(&poses.scene, evaluation.methods(&list));
     poses.iter().flat_map(rows).collect()
 }
 

@@ -145,10 +145,12 @@ fn follow(md: &Difference, d: V, portal: &mut Option<Portal>, tolerance: f64, ha
     End::Failed
 }
 
-/// Returns depth and direction of a local minimum from a unit direction.
-fn penetration(md: &Difference, start: V, tolerance: f64, has_shortcut: bool) -> Option<(f64, V)> {
+/// Returns depth and direction of a local minimum from a unit direction. `keeps_portal`: a ray begins with that of the one
+/// before.
+fn penetration(md: &Difference, start: V, tolerance: f64, has_shortcut: bool, keeps_portal: bool) -> Option<(f64, V)> {
     let (mut d, mut portal, mut last_q) = (start, None, f64::NAN);
     for _ in 0..MAX_ITERATIONS {
+        portal = portal.filter(|_| keeps_portal);
         d = match follow(md, d, &mut portal, tolerance, has_shortcut) {
             End::Shortcut(n) => n,
             End::Converged(q, n) => {
@@ -166,17 +168,19 @@ fn penetration(md: &Difference, start: V, tolerance: f64, has_shortcut: bool) ->
     None
 }
 
-/// Returns Algorithm 4/5, or Algorithm 3, which has no shortcut. Warm, it starts from the last direction of the motion.
-pub fn method(libraries: &Libraries, has_shortcut: bool, start: Start, tolerance: f64) -> Method<'static> {
+/// Returns Algorithm 4/5, the same with new portals, or Algorithm 3, by name. Warm, it starts from the last direction of the
+/// motion.
+pub fn method(libraries: &Libraries, name: &'static str, start: Start, tolerance: f64) -> Method<'static> {
+    let (has_shortcut, keeps_portal) = (name != super::ALGORITHM_3, name != super::NEW_PORTALS);
     let callbacks = libraries.callbacks;
     let mut last: Option<V> = None;
     let query = move |pair: &Pair| {
         let memory = last.filter(|_| start == Start::Warm && pair.frame > 0);
         let guess = start.guess(&pair.truth).map(V::from).or(memory).unwrap_or_else(|| pair.truth.cold.into());
-        let (depth, dir) = penetration(&Difference { callbacks, pair }, guess, tolerance, has_shortcut)?;
+        let md = Difference { callbacks, pair };
+        let (depth, dir) = penetration(&md, guess, tolerance, has_shortcut, keeps_portal)?;
         last = Some(dir);
         Some(Answer { depth, dir: dir.into() })
     };
-    let name = if has_shortcut { super::ALGORITHM_4_5 } else { super::ALGORITHM_3 };
     Method::new(name, start, Some(tolerance), Box::new(query))
 }

@@ -24,8 +24,7 @@ pub fn measure(evaluation: &Evaluation, poses: &[Poses]) -> Vec<Row> {
 }
 
 pub fn draw(path: &Path, rows: &[Row], notes: &[String]) {
-    let panel =
-        |title: &str, y| Panel { title: title.to_owned(), x: VERTICES, y, rows: rows.iter().collect(), limit: None };
+    let panel = |title: &str, y| Panel { title: title.to_owned(), x: VERTICES, y, rows: rows.iter().collect() };
     let panels = vec![panel("(a) support points", SUPPORTS), panel("(b) time", TIME)];
     figure::grid(path, "With the shortcut (Algorithm 4/5) and without (Algorithm 3)", 2, panels, notes)
         .expect("a picture");

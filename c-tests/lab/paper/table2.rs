@@ -14,6 +14,7 @@ pub fn table(rows: &[Row]) -> String {
         rows,
         PUBLISHED,
         &[
+            ("mean of all runs, mrad", |row| row.direction_mean.unwrap_or(f64::NAN)),
             ("mean of those within 1 mm, mrad", |row| row.direction_mean_1mm.unwrap_or(f64::NAN)),
             ("99 % of all, mrad", |row| row.direction_p99.unwrap_or(f64::NAN)),
         ],

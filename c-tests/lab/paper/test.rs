@@ -9,7 +9,7 @@ use crate::measuring::measure::{Row, Runner};
 use crate::measuring::methods::Start;
 use crate::paper::deep::{self, Polytope};
 use crate::paper::poses::{self, Mesh, Shape};
-use crate::paper::{polygon, published};
+use crate::paper::{ALGORITHM_3, ALGORITHM_4_5, polygon, published};
 
 /// Checks that DEEP's depths are support values and local minima: no direction near its own has a lower one; and that from
 /// 5° nearly all are the global one.
@@ -52,12 +52,38 @@ fn published_algorithms_reach_the_minimum() {
     for shapes in [[&Shape::Sphere, &Shape::Capsule], [&Shape::Capsule, &Shape::Capsule]] {
         let poses = poses::random(&libraries, "rounded", shapes, 200);
         let methods =
-            [true, false].map(|has_shortcut| published::method(&libraries, has_shortcut, Start::Guess45, 1e-6));
+            [ALGORITHM_4_5, ALGORITHM_3].map(|name| published::method(&libraries, name, Start::Guess45, 1e-6));
         let rows = Runner::new(&libraries).rows(&poses.scene, methods.into());
         for row in &rows {
             assert!(row.missed == 0.0 && row.max_error < 1e-4, "{row:?}");
         }
         assert!(rows[0].supports < 0.6 * rows[1].supports, "{rows:?}");
+    }
+}
+
+/// Checks that both end in local minima of hulls from 45°, despite the shortcut: no direction within 3 mrad, the error that
+/// the tolerance allows, is lower by five tolerances.
+#[test]
+fn published_algorithms_end_in_local_minima() {
+    let mut libraries = Libraries::open();
+    libraries.use_placed();
+    for halvings in 0..4 {
+        let hull: &'static Shape = Box::leak(Box::new(Shape::Hull(Mesh::icosphere(halvings))));
+        let poses = [hull, &Shape::Capsule].map(|other| poses::random(&libraries, "hulls", [hull, other], 300));
+        for (pair, name) in poses.iter().flat_map(|p| &p.scene.pairs).zip([ALGORITHM_4_5, ALGORITHM_3].iter().cycle()) {
+            let mut method = published::method(&libraries, name, Start::Guess45, 1e-6);
+            let answer = (method.query)(pair).expect("an overlap");
+            let n = nalgebra::Vector3::from(answer.dir);
+            let e1 = n.cross(&nalgebra::Vector3::ith(n.iamin(), 1.0)).normalize();
+            for (k, tangent) in (0..32).map(|k| (f64::from(k) * 0.4, [1e-3, 3e-3][k as usize % 2])) {
+                let beside = n + (e1 * k.cos() + n.cross(&e1) * k.sin()) * tangent;
+                let value = crate::measuring::measure::support_value(&libraries, pair, beside.normalize());
+                assert!(
+                    value >= answer.depth - 5e-6,
+                    "{name}, {halvings}: {answer:?} is no minimum, {value} beside it"
+                );
+            }
+        }
     }
 }
 

@@ -44,7 +44,7 @@ impl Tolerances {
 fn closest(
     libraries: &Libraries,
     poses: &[Poses],
-    (method, starts): (&str, &[Start]),
+    (method, starts): (&'static str, &[Start]),
     error: fn(&Row) -> f64,
     published: &[f64],
     powers: std::ops::RangeInclusive<i32>,

@@ -27,8 +27,7 @@ pub fn measure(evaluation: &Evaluation, poses: &[Poses]) -> Vec<Row> {
 }
 
 pub fn draw(path: &Path, rows: &[Row], notes: &[String]) {
-    let panel =
-        |title: &str, y| Panel { title: title.to_owned(), x: VERTICES, y, rows: rows.iter().collect(), limit: None };
+    let panel = |title: &str, y| Panel { title: title.to_owned(), x: VERTICES, y, rows: rows.iter().collect() };
     let panels = vec![panel("time", TIME), panel("support points", SUPPORTS)];
     figure::grid(path, "Hull of a sphere against a capsule, guesses 5° and 45° off", 2, panels, notes)
         .expect("a picture");

@@ -9,7 +9,7 @@
 
 #include <stddef.h>
 
-static int counting, live; /* live: blocks that are not freed */
+static int counting, live, most; /* live: blocks that are not freed; most: of them at once */
 static unsigned long allocations, fail_at;
 static struct { void *block; size_t size; } last; /* the last one allocated */
 
@@ -17,7 +17,7 @@ static struct { void *block; size_t size; } last; /* the last one allocated */
 static void start_counting(unsigned long fail)
 {
     counting = 1;
-    live = 0;
+    live = most = 0;
     allocations = 0;
     fail_at = fail;
 }
@@ -37,6 +37,7 @@ static int count_allocation(void) { return !counting || ++allocations != fail_at
 static void *add_block(void *block, size_t size)
 {
     live += block != NULL;
+    most = live > most ? live : most;
     last.block = block;
     last.size = size;
     return block;

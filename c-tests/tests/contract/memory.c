@@ -26,6 +26,9 @@ static void check_queries(void)
             /* A distance allocates only for an overlap. */
             if (!(entry->traits & MAY_ALLOCATE) || (!overlapping && entry->number == CALL_DISTANCE))
                 CHECK(allocations == 0, "%s allocated %lu blocks", entry->name, allocations);
+            /* The size that warm.h states, of what an exception leaks. */
+            if (allocations > 0)
+                CHECK(most == 1 && last.size / 1000 == 98, "%s allocated %d blocks at once, the last of %zu bytes", entry->name, most, last.size);
             allocating += allocations > 0;
             const unsigned long last_fail = allocations < 40 ? allocations : 40;
             for (unsigned long fail = 1; fail <= last_fail; fail++) {

@@ -90,6 +90,28 @@ fn generated(root: &Path, name: &str, included: &str, sections: &str) -> String 
     text + &format!("\n#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {guard} */\n")
 }
 
+/// Checks that include/README.md has every call of the headers as it is declared there.
+#[test]
+fn the_page_has_every_signature() {
+    let include = Path::new(env!("CARGO_MANIFEST_DIR")).join("include");
+    let read = |name: &str| std::fs::read_to_string(include.join(name)).expect(name);
+    let page = read("README.md");
+    let mut calls = 0;
+    for header in ["ccd/ccd.h", "ccd/warm.h", "ccd/paper.h"] {
+        let text = read(header).split_whitespace().collect::<Vec<_>>().join(" ");
+        for declared in text.split("CCD_EXPORT ").skip(1) {
+            let declared = declared.split_once(';').expect("a declaration").0;
+            let signature = &declared[declared.find("ccd").expect("a name")..];
+            let signature = signature.replace("const void *obj1, const void *obj2, const ccd_t *ccd", "…");
+            let signature = signature.replace("unsigned int", "unsigned");
+            let is_callback = signature.starts_with("ccdFirstDirDefault");
+            assert!(is_callback || page.contains(&format!("`{signature}`")), "{header}: {signature}");
+            calls += 1;
+        }
+    }
+    assert!(calls >= 20, "{calls}");
+}
+
 #[test]
 fn headers_match_the_source() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

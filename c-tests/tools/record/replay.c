@@ -41,6 +41,7 @@ typedef struct method {
     int (*libccd)(const void *, const void *, const ccd_t *, ccd_real_t *, ccd_vec3_t *, ccd_vec3_t *);
     int call, is_warm, has_pos; /* of the extension */
     unsigned long queries, overlaps, supports, judged, verdicts[VERDICTS];
+    unsigned long directions; /* wrong, of right depths */
     double error_sum, error_max; /* metres, of those judged: hits that are hits */
     double *frame[2];            /* nanoseconds of each frame in its fastest pass: pairs apart, pairs that overlap */
 } method_t;
@@ -116,8 +117,19 @@ static method_t method[] = {
 };
 enum { METHODS = sizeof method / sizeof method[0] };
 
-/* Judges one result by the bounds on the signed depth. */
-static void judge(method_t *m, const result_t *result, const recording_pair_t *pair)
+/* Returns the depth along a direction: the support value of the difference. */
+static double depth_along(const shape_t *obj1, const shape_t *obj2, const ccd_t *ccd, const ccd_vec3_t *dir)
+{
+    ccd_vec3_t back = *dir, first, second;
+    ccdVec3Scale(&back, -1);
+    ccd->support1(obj1, dir, &first);
+    ccd->support2(obj2, &back, &second);
+    ccdVec3Sub(&first, &second);
+    return (double)ccdVec3Dot(&first, dir);
+}
+
+/* Judges one result by the bounds on the signed depth: the depth, and where that is right the direction. */
+static void judge(method_t *m, const result_t *result, const recording_pair_t *pair, const shape_t *body, const ccd_t *ccd)
 {
     const verdict_truth_t truth = {pair->lower, pair->upper, TOLERANCE, CONTACT_EPS};
     const verdict_answer_t answer = {result->code == 0, 1, (double)result->depth, (double)ccdVec3Len2(&result->dir)};
@@ -125,6 +137,8 @@ static void judge(method_t *m, const result_t *result, const recording_pair_t *p
     m->queries++;
     m->overlaps += pair->lower > 0;
     m->verdicts[v]++;
+    m->directions += v == VERDICT_RIGHT && answer.hit
+                     && !(depth_along(&body[pair->a], &body[pair->b], ccd, &result->dir) <= 1.01 * pair->upper + 2 * TOLERANCE);
     if (verdict_has_error(&answer, v)) {
         const double error = verdict_error(&answer, &truth);
         m->error_sum += error;
@@ -168,10 +182,10 @@ static void replay_pass(const recording_t *r, method_t *m, int is_first, shape_t
         recording_place(r, f, body);
         time_frame(r, m, f, pair, 1, body, &ccd, result);
         time_frame(r, m, f, pair, 0, body, &ccd, result);
-        for (uint32_t i = 0; is_first && i < r->frame_pairs[f]; i++)
-            judge(m, &result[i], &pair[i]);
         for (uint32_t i = 0; is_first && i < r->bodies; i++)
             m->supports += body[i].calls;
+        for (uint32_t i = 0; is_first && i < r->frame_pairs[f]; i++)
+            judge(m, &result[i], &pair[i], body, &ccd);
     }
 }
 
@@ -188,15 +202,15 @@ static void print_table(const recording_t *r)
 {
     printf("%u bodies, %u frames, %u pairs, %lu of them overlap\n\n", (unsigned)r->bodies, (unsigned)r->frames, (unsigned)r->pairs,
            method[0].overlaps);
-    printf("%-17s %6s %5s %6s %5s %7s %7s %6s %8s %5s %5s\n", "method", "missed", "false", "broken", "deep", "unsound", "mean um",
+    printf("%-17s %6s %5s %6s %5s %7s %5s %7s %6s %8s %5s %5s\n", "method", "missed", "false", "broken", "deep", "unsound", "dir", "mean um",
            "max um", "supports", "hit", "ns");
     for (const method_t *m = method + 1; m < method + METHODS; m++) {
         const double overlaps = fmax(1, (double)m->overlaps), queries = fmax(1, (double)m->queries);
         const double hits = total_time(m, r->frames, 1), misses = total_time(m, r->frames, 0);
         /* a support point of the difference takes a call of each shape */
-        printf("%-17s %6lu %5lu %6lu %5lu %7lu %7.3g %6.0f %8.2f %5.0f %5.0f\n", m->name, m->verdicts[VERDICT_MISSED],
+        printf("%-17s %6lu %5lu %6lu %5lu %7lu %5lu %7.3g %6.0f %8.2f %5.0f %5.0f\n", m->name, m->verdicts[VERDICT_MISSED],
                m->verdicts[VERDICT_SPURIOUS], m->verdicts[VERDICT_INVALID], m->verdicts[VERDICT_DEEP],
-               m->verdicts[VERDICT_UNSOUND], 1e6 * m->error_sum / fmax(1, (double)m->judged), 1e6 * m->error_max,
+               m->verdicts[VERDICT_UNSOUND], m->directions, 1e6 * m->error_sum / fmax(1, (double)m->judged), 1e6 * m->error_max,
                (double)m->supports / 2 / queries, hits / overlaps, (hits + misses) / queries);
     }
     printf("\na support point alone: %.1f ns\n", (total_time(&method[0], r->frames, 0) + total_time(&method[0], r->frames, 1)) /
