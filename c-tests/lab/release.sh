@@ -56,6 +56,7 @@ step libccd-tests sh c-tests/lab/libccd_tests.sh
 step price cargo test -p lab price::
 step reasons sh c-tests/lab/reasons.sh
 step ode-demos sh c-tests/lab/ode_demos.sh
+step fuzz sh c-tests/lab/fuzz/fuzz.sh
 step miri cargo test -p lab miri::
 step simulations cargo test --no-fail-fast -p lab simulations::
 step long cargo run --release -p lab --bin engines -- long
