@@ -247,11 +247,15 @@ END
 elsewhere "linux-inside.sh, in the archive" <<'END'
 linux.sh OUT
 sh cmake/packages/linux.sh OUT
+prebuilt.sh SUITE OUT
+prebuilt.sh bookworm
+prebuilt.sh trixie
 try-linux.sh SUITE ARCHIVE
 try-linux.sh bookworm
 try-linux.sh trixie
 ./run-on-warmccd.sh PROGRAM
 LD_LIBRARY_PATH=$PWD/lib PROGRAM
+LD_LIBRARY_PATH=$PWD/lib LD_PRELOAD=libwarmccd-fcl.so PROGRAM
 cc example.c -Iinclude lib/libccd.a -Wl,--gc-sections -lm -o example && ./example
 cc example.c -Iinclude lib/libccd.so.2 -lm -Wl,-rpath,"$PWD/lib" -o example && ./example
 cc example.c $(PKG_CONFIG_PATH=$PWD/lib/pkgconfig pkg-config --cflags --libs ccd) -Wl,-rpath,"$PWD/lib" -o example && ./example

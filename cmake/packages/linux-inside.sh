@@ -59,6 +59,11 @@ cc -std=gnu99 -O2 -w -I"$repository/c-tests" -idirafter include "$repository/c-t
 expect "of 500 overlap" ./run-on-warmccd.sh ./fcl
 expect "^this library  *0  *0  *0  *0  *0 " ./run-on-warmccd.sh ./fcl
 expect "^this library  *0  *0  *0  *0  *0 " ./run-on-warmccd.sh ./ode 1 400 40 pile
+c++ -O2 -w -DOURS_ALONE -I"$repository/c-tests" -Iinclude -I/usr/include/eigen3 "$repository/c-tests/engines/fcl_distance.cpp" \
+    -lfcl -lccd -o distance
+expect "^function libfcl" ./distance 200
+expect "^kissing .* threw 0 endless 0 wrong 0 outside 0 unequal 0" \
+    env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD=libwarmccd-fcl.so ./distance 200
 
 echo "== python-fcl's wheel"
 python3 -m venv venv

@@ -21,10 +21,12 @@ archive=$(sh "$here/source.sh" "$out")
 for suite in bookworm trixie; do
     sh "$here/try.sh" "$suite" "$archive" "$out"
 done
-built=$(sh "$here/linux.sh" "$out" | tail -n 1)
-for suite in bookworm trixie; do
-    sh "$here/try-linux.sh" "$suite" "$built"
+# Built on both; the older's is published, and tried on both.
+for suite in trixie bookworm; do
+    sh "$here/prebuilt.sh" "$suite" "$out"
+    sh "$here/try-linux.sh" "$suite" "$out"/*.tar.gz
 done
+sh "$here/try-linux.sh" trixie "$out"/*.tar.gz
 cd "$out"
 sha256sum -- *.tar.xz *.tar.gz *.deb >SHA256SUMS
 cat SHA256SUMS
