@@ -7,7 +7,7 @@
 #   setup.sh lab    those, and the engines of lab/: MuJoCo and DART, and with DART Bullet
 #   setup.sh main   packages of the main job
 #   setup.sh compare  packages of compare.sh: those of the main job, and a C++ compiler
-#   setup.sh archive  packages of cmake/packages/linux.sh
+#   setup.sh archive  packages of cmake/packages/linux.sh and wheel.sh
 #   setup.sh check  installs nothing; prints the tests' missing packages in one line
 
 set -eu
@@ -96,6 +96,7 @@ archive)
     want_command git git
     want_command musl-gcc musl-tools
     echo '#include <fcl/config.h>' | c++ -E -x c++ -o /dev/null - 2>/dev/null || missing="$missing libfcl-dev"
+    python3 -c 'import ensurepip' 2>/dev/null || missing="$missing python3-venv"
     ;;
 *)
     want_command objcopy binutils

@@ -261,6 +261,19 @@ cc example.c -Iinclude lib/libccd.so.2 -lm -Wl,-rpath,"$PWD/lib" -o example && .
 cc example.c $(PKG_CONFIG_PATH=$PWD/lib/pkgconfig pkg-config --cflags --libs ccd) -Wl,-rpath,"$PWD/lib" -o example && ./example
 cmake -S . -B build -DCMAKE_PREFIX_PATH=/path/to/this/folder
 END
+elsewhere "try-wheel.sh, without a compiler and in a build" <<'END'
+sh cmake/packages/wheel.sh OUT
+wheel.sh OUT [ARCHIVE]
+try-wheel.sh SUITE WHEEL
+try-wheel.sh bookworm
+try-wheel.sh trixie
+warmccd compare python app.py
+warmccd run python app.py
+warmccd run --signed-distance python app.py
+include=$(python -c 'import warmccd; print(warmccd.get_include())')
+library=$(python -c 'import warmccd; print(warmccd.get_library())')
+cc app.c -I"$include" "$library" -lm -Wl,-rpath,"${library%/*}"
+END
 elsewhere ".ci/run" <<'END'
 cargo test
 sh c-tests/test.sh

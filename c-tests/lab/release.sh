@@ -44,7 +44,8 @@ packages() {
     sh "cmake/packages/$1.sh" "$2"
 }
 prebuilt() {
-    sh cmake/packages/prebuilt.sh "$1" "$logs/$1" && sh cmake/packages/try-linux.sh "$1" "$logs/$1"/*.tar.gz
+    sh cmake/packages/prebuilt.sh "$1" "$logs/$1" && sh cmake/packages/try-linux.sh "$1" "$logs/$1"/*.tar.gz &&
+        sh cmake/packages/try-wheel.sh "$1" "$logs/$1"/*.whl
 }
 
 sh c-tests/setup.sh lab

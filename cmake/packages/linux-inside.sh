@@ -11,10 +11,9 @@ set -eu
 [ $# -eq 2 ] || { echo "usage: linux-inside.sh ARCHIVE REPOSITORY" >&2; exit 2; }
 archive=$(realpath "$1")
 repository=$(realpath "$2")
-if command -v cargo rustc >/dev/null; then
-    echo "linux-inside.sh: there is a Rust here" >&2
-    exit 1
-fi
+for tool in cargo rustc; do
+    ! command -v $tool || { echo "linux-inside.sh: there is $tool here" >&2; exit 1; }
+done
 rm -rf folder
 mkdir folder
 cd folder

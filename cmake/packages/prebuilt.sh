@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-#   prebuilt.sh SUITE OUT   makes linux.sh's archive in a clean Debian of bookworm or trixie, into OUT
+#   prebuilt.sh SUITE OUT   makes linux.sh's archive and wheel.sh's wheel in a clean Debian of bookworm or trixie, into OUT
 #
 # From the commit that is checked out, with Debian's Rust alone; linux.sh installs what else it needs. As root; chroot.sh
 # says more.
@@ -26,5 +26,5 @@ make_chroot "$name" "$suite"
 apt_in_chroot "$name" $rust git ca-certificates
 rm -rf "$root/root/warmccd" "$root/root/out"
 git clone -q "$here/../.." "$root/root/warmccd"
-in_chroot "$name" sh -c 'cd /root/warmccd && sh cmake/packages/linux.sh /root/out'
+in_chroot "$name" sh -c 'cd /root/warmccd && sh cmake/packages/linux.sh /root/out && sh cmake/packages/wheel.sh /root/out /root/out/*.tar.gz'
 cp "$root"/root/out/* "$out"
