@@ -65,8 +65,14 @@ expect "^kissing .* threw 0 endless 0 wrong 0 outside 0 unequal 0" \
     env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD=libwarmccd-fcl.so ./distance 200
 
 echo "== python-fcl's wheel"
+program=$repository/c-tests/lab/engines/wheel.py
 python3 -m venv venv
 venv/bin/pip install -q python-fcl
-expect "depth 0\.\(49999\|5000\)" venv/bin/python "$repository/c-tests/lab/engines/wheel.py"
-expect "depth 0\.\(09999\|1000\)" env LD_PRELOAD="$PWD/lib/libccd.so.2" venv/bin/python "$repository/c-tests/lab/engines/wheel.py"
+expect "depth 0\.\(49999\|5000\)" venv/bin/python "$program"
+preload=libccd.so.2
+for aside in "0.000" "0.0[1-9]"; do
+    expect "depth 0\.\(09999\|1000\)" env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD="$preload" venv/bin/python "$program"
+    expect "aside $aside" env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD="$preload" venv/bin/python "$program"
+    preload="libwarmccd-middle.so libccd.so.2"
+done
 echo "linux-inside.sh: all is well"

@@ -5,7 +5,7 @@
 #   linux.sh OUT   makes OUT/warmccd-VERSION-linux-x86_64.tar.gz, with which no program needs Rust
 #
 # The library in double precision, below single/ in single, each with its headers, CMake and pkg-config files, which can be
-# moved; libwarmccd-fcl.so; run-on-warmccd.sh with compare.sh's recorder. Nothing in it needs a symbol above GLIBC_2.28.
+# moved; libwarmccd-fcl.so, libwarmccd-middle.so; run-on-warmccd.sh with compare.sh's recorder. Nothing in it needs a symbol above GLIBC_2.28.
 # Installs what is missing by setup.sh. The same commit and compilers give the same bytes.
 
 set -eu
@@ -61,7 +61,8 @@ install -m 755 cmake/packages/run-on-warmccd.sh "$tree"
 cp cmake/packages/linux.md "$tree/README.md"
 awk '/^```c$/ { inside = 1; next } /^```/ && inside { exit } inside' README.md >"$tree/example.c"
 
-sh cmake/packages/symbols.sh "$tree/lib/libccd.so.2" "$tree/lib/libwarmccd-fcl.so" "$tree/single/lib/libccd.so.2"
+sh cmake/packages/symbols.sh "$tree/lib/libccd.so.2" "$tree/lib/libwarmccd-fcl.so" "$tree/lib/libwarmccd-middle.so" \
+    "$tree/single/lib/libccd.so.2"
 date=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}
 tar -c -C "$work" --sort=name --mtime="@$date" --owner=0 --group=0 --numeric-owner --mode=go=rX,u+rw "$name" |
     gzip -9n >"$out/$name.tar.gz"

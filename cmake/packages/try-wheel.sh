@@ -24,9 +24,10 @@ prepared() {
     apt_in_chroot "$name" "$@" ca-certificates
     work=$chroots/$name/work
     rm -rf "$work"
-    mkdir -p "$work/repository/cmake" "$work/tried"
+    mkdir -p "$work/repository/cmake" "$work/repository/c-tests/lab/engines" "$work/tried"
     cp "$wheel" "$work"
     cp -r "$here" "$work/repository/cmake/packages"
+    cp "$here/../../c-tests/lab/engines/wheel.py" "$work/repository/c-tests/lab/engines"
 }
 
 prepared "wheel-$suite" python3-venv

@@ -12,7 +12,8 @@
 set -eu
 [ $# -eq 2 ] || { echo "usage: wheel-inside.sh WHEEL REPOSITORY" >&2; exit 2; }
 wheel=$(realpath "$1")
-tests=$(realpath "$2")/cmake/packages/wheel/tests
+repository=$(realpath "$2")
+program=$repository/c-tests/lab/engines/wheel.py
 for tool in cargo rustc cc gcc c++; do
     ! command -v $tool || { echo "wheel-inside.sh: there is $tool here" >&2; exit 1; }
 done
@@ -37,20 +38,22 @@ python3 -m venv venv
 PATH=$PWD/venv/bin:$PATH
 pip install -q "$wheel" python-fcl trimesh scipy pytest
 echo "== programs"
-expect "^depth 0.49999" python "$tests/programs.py"
+expect "^wheel depth 0.49999" python "$program"
 for way in "" --signed-distance; do
     # shellcheck disable=SC2086  # none or one
-    expect "^library warmccd" warmccd run $way python "$tests/programs.py"
+    expect "^library warmccd" warmccd run $way python "$program"
     # shellcheck disable=SC2086
-    expect "^depth 0.10000" warmccd run $way python "$tests/programs.py"
+    expect "^wheel depth 0.10000" warmccd run $way python "$program"
 done
-expect "sending signal TERM" timeout --verbose 10 python "$tests/programs.py" distance
-expect "^distance -0.894427" warmccd run --signed-distance python "$tests/programs.py" distance
+expect "^wheel aside 0.000" warmccd run python "$program"
+expect "^wheel aside 0.0[1-9]" warmccd run --middle python "$program"
+expect "^wheel depth 0.10000" warmccd run --middle --signed-distance python "$program"
+expect "^signed queries 3000 wrong 0" warmccd run --signed-distance python "$program" signed
 expect "No such file" warmccd run ./missing
 for way in "" --swap; do
     for text in "libccd: .*/python_fcl.libs/libccd-" "^ccdMPRPenetration  *2,001 " "^this library  *0  *0  *0  *0  *0 "; do
         # shellcheck disable=SC2086
-        expect "$text" warmccd compare --every 2 $way python "$tests/programs.py"
+        expect "$text" warmccd compare --every 2 $way python "$program"
     done
 done
 expect "usage: compare.sh" warmccd compare
@@ -67,7 +70,7 @@ pip download -q -d sources --no-deps --no-binary :all: "$(pip freeze | grep ^tri
 for file in sources/*.tar.gz; do
     tar -xzf "$file" -C tests --wildcards --strip-components=2 '*/test_fcl.py' '*/test_collision.py' 2>/dev/null || true
 done
-cp "$tests/generic.py" tests
+cp "$repository/cmake/packages/wheel/tests/generic.py" tests
 cd tests
 run_tests="python -m pytest -q --tb=short -k not(test_scene)"
 # shellcheck disable=SC2086  # one word each

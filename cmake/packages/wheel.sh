@@ -4,7 +4,7 @@
 #
 #   wheel.sh OUT [ARCHIVE]   makes OUT/warmccd-VERSION-py3-none-manylinux_2_28_x86_64.whl from linux.sh's archive (default: made now)
 #
-# The double library, libwarmccd-fcl.so, headers, notices and the recorder, which `warmccd` runs programs with; for each
+# The double library, libwarmccd-fcl.so, libwarmccd-middle.so, headers, notices and the recorder, which `warmccd` runs programs with; for each
 # Python 3 of a Linux with glibc 2.28 or later. Needs python3-venv and a network, for setuptools. The same archive and setuptools
 # give the same bytes.
 
@@ -30,7 +30,7 @@ sed -i "s/@VERSION@/$(sh "$here/version.sh")/" "$tree/pyproject.toml"
 cp "$work/built/LICENSE" "$work/built/THIRD-PARTY" "$tree"
 cp -r "$work/built/include" "$work/built/recorder" "$package"
 mkdir "$package/lib"
-cp -L "$work/built/lib/libccd.so.2" "$work/built/lib/libwarmccd-fcl.so" "$package/lib"
+cp -L "$work/built/lib/libccd.so.2" "$work/built/lib/libwarmccd-fcl.so" "$work/built/lib/libwarmccd-middle.so" "$package/lib"
 find "$package" -name '*.so*' -exec sh "$here/symbols.sh" {} +
 
 python3 -m venv "$work/venv"

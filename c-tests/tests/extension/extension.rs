@@ -33,6 +33,7 @@ run_programs! {
     pos_of_flat_bars_is_on_their_middle: program("tests/extension/pos_flat.c").strict(), ["lying", &harness::rounds(300)];
     pos_of_leaning_bodies_does_not_jump: program("tests/extension/pos_flat.c").strict(), ["leaning", &harness::rounds(1000)];
     pos_does_not_jump_where_its_axes_change: program("tests/extension/pos_flat.c").strict(), ["axes", &harness::rounds(1000)];
+    pos_in_the_middle: program("tests/extension/middle_pos.c").strict(), ["2000"];
     contacts_are_exact: program("tests/extension/contacts.c").strict(), [one_in(10)];
 }
 

@@ -15,7 +15,7 @@ _HERE = pathlib.Path(__file__).resolve().parent
 
 def _run(arguments: argparse.Namespace) -> "list[str]":
     """Returns the program's command, and sets the environment in which it runs on this library."""
-    preloaded = ["libccd.so.2"] + ["libwarmccd-fcl.so"] * arguments.signed_distance
+    preloaded = ["libwarmccd-middle.so"] * arguments.middle + ["libccd.so.2"] + ["libwarmccd-fcl.so"] * arguments.signed_distance
     # By their names: a path in LD_PRELOAD is split at its blanks.
     for variable, separator, values in [
         ("LD_LIBRARY_PATH", ":", [str(_HERE / "lib")]),
@@ -39,6 +39,8 @@ def main() -> None:
 
     run = commands.add_parser("run", help="run a program on this library")
     run.add_argument("--signed-distance", action="store_true", help="FCL's signed distances too (fcl.distance)")
+    run.add_argument("--middle", action="store_true", help="contact positions in the middle of the witness points, which costs less:"
+                     " for programs that use no position; what rests slides by them")
     run.add_argument("program", metavar="PROGRAM", help="such as python")
     run.add_argument("arguments", metavar="ARGUMENT", nargs=argparse.REMAINDER)
     run.set_defaults(command=_run)
