@@ -2,11 +2,12 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 #
-#   wheel.sh OUT [ARCHIVE]   makes OUT/warmccd-VERSION-py3-none-manylinux_2_28_x86_64.whl from linux.sh's archive (default: made now)
+#   wheel.sh OUT [ARCHIVE]   makes OUT/warmccd-VERSION-py3-none-manylinux_2_28_x86_64.whl from linux.sh's archive (made now
+#                            if not named)
 #
-# The double library, libwarmccd-fcl.so, libwarmccd-middle.so, headers, notices and the recorder, which `warmccd` runs programs with; for each
-# Python 3 of a Linux with glibc 2.28 or later. Needs python3-venv and a network, for setuptools. The same archive and setuptools
-# give the same bytes.
+# The double library, libwarmccd-fcl.so, libwarmccd-middle.so, headers, notices and the recorder, which `warmccd` runs programs
+# with; for each Python 3 of a Linux with glibc 2.28 or later. Needs python3-venv and a network, for setuptools. The same
+# archive and setuptools give the same bytes.
 
 set -eu
 [ $# -eq 1 ] || [ $# -eq 2 ] || { echo "usage: wheel.sh OUT [ARCHIVE]" >&2; exit 2; }
@@ -39,4 +40,4 @@ export SOURCE_DATE_EPOCH
 "$work/venv/bin/pip" wheel -q --no-deps -w "$work/wheel" \
     --config-settings=--build-option=--plat-name=manylinux_2_28_x86_64 "$tree"
 cp "$work"/wheel/*.whl "$out"
-echo "$out/$(cd "$work/wheel" && echo ./*.whl)"
+echo "$out/$(basename "$work"/wheel/*.whl)"
