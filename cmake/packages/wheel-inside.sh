@@ -51,7 +51,7 @@ expect "^wheel depth 0.10000" warmccd run --middle --signed-distance python "$pr
 expect "^signed queries 3000 wrong 0" warmccd run --signed-distance python "$program" signed
 expect "No such file" warmccd run ./missing
 for way in "" --swap; do
-    for text in "libccd: .*/python_fcl.libs/libccd-" "^ccdMPRPenetration  *2,001 " "^this library  *0  *0  *0  *0  *0 "; do
+    for text in "libccd: .*/python_fcl.libs/libccd-" "^ccdMPRPenetration  *2,002 " "^this library  *0  *0  *0  *0  *0 "; do
         # shellcheck disable=SC2086
         expect "$text" warmccd compare --every 2 $way python "$program"
     done
