@@ -65,8 +65,8 @@ print(library.ccdImplementation().decode(), open(warmccd.get_include() + '/ccd/w
 echo "== tests of python-fcl and trimesh"
 mkdir tests
 # The newer packages of python-fcl have no source; its tests are older than they are.
-pip download -q -d sources --no-deps --no-binary :all: python-fcl==0.0.12
-pip download -q -d sources --no-deps --no-binary :all: "$(pip freeze | grep ^trimesh=)"
+pip download -q -d sources --no-deps --no-binary python-fcl python-fcl==0.0.12
+pip download -q -d sources --no-deps --no-binary trimesh "$(pip freeze | grep ^trimesh=)"
 for file in sources/*.tar.gz; do
     tar -xzf "$file" -C tests --wildcards --strip-components=2 '*/test_fcl.py' '*/test_collision.py' 2>/dev/null || true
 done
