@@ -43,6 +43,10 @@ campaign() {
 packages() {
     sh "cmake/packages/$1.sh" "$2"
 }
+prebuilt() {
+    sh cmake/packages/prebuilt.sh "$1" "$logs/$1" && sh cmake/packages/try-linux.sh "$1" "$logs/$1"/*.tar.gz &&
+        sh cmake/packages/try-wheel.sh "$1" "$logs/$1"/*.whl
+}
 
 sh c-tests/setup.sh lab
 step charts cargo test --no-fail-fast -p lab charts_test::
@@ -75,6 +79,8 @@ step jumps campaign jumps
 step truth campaign truth
 step bookworm packages tests bookworm
 step trixie packages tests trixie
+step prebuilt-bookworm prebuilt bookworm
+step prebuilt-trixie prebuilt trixie
 step arm64 packages cross arm64
 step i386 packages cross i386
 step platforms sh cmake/packages/platforms.sh
