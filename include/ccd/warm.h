@@ -401,7 +401,8 @@ typedef struct ccd_contact_t {
    */
   ccd_real_t depth;
   /**
-   * Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache.
+   * Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache. When a
+   * contact vanishes, a new one within a quarter of the overlap's extent takes its id.
    */
   unsigned int id;
 } ccd_contact_t;
