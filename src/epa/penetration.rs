@@ -38,11 +38,11 @@ use crate::epa::buffers::{
     Arena, EpaBuffers, LARGE_FACES, LARGE_VERTICES, SMALL_FACES, SMALL_VERTICES, START_VERTICES,
 };
 use crate::epa::direction::refine_direction;
-use crate::epa::expand::{EpaLimits, expand};
+use crate::epa::expand::{EpaLimits, Expansion, expand};
 use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, max_foot_distance2, witness_points};
 use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
-use crate::gjk::intersect::{CAPACITY, Enclosing, contains_origin};
+use crate::gjk::intersect::{CAPACITY, OverlapProof, contains_origin};
 use crate::math::{Vec3, larger, lesser, normalise_unscaled};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
@@ -500,16 +500,14 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         polytope: &mut EpaPolytope<F>,
         has_larger: bool,
     ) -> Result<Option<Status>, Stop> {
-        expand(
-            self.query,
-            set,
-            &mut self.fit,
-            &self.interior.v,
-            polytope,
-            &mut self.iterations,
-            &self.request.limits,
-            has_larger,
-        )
+        let expansion = Expansion {
+            query: self.query,
+            fit: &mut self.fit,
+            interior: &self.interior.v,
+            limits: &self.request.limits,
+            iterations: &mut self.iterations,
+        };
+        expand(expansion, set, polytope, has_larger)
     }
 
     /// Proves by GJK, from unit `dir`, that the objects overlap by more than the contact epsilon.
@@ -518,7 +516,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     /// As [`contains_origin`].
     #[cold]
     #[inline(never)]
-    fn prove_overlap(&mut self, dir: &Vec3) -> Result<Enclosing, Stop> {
+    fn prove_overlap(&mut self, dir: &Vec3) -> Result<OverlapProof, Stop> {
         let mut known = VertexSet::<CAPACITY>::EMPTY;
         contains_origin(self.query, &mut known, None, dir, false)
     }
@@ -533,7 +531,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
     ) -> Result<[Vertex; 4], Stop> {
         let found = self.prove_overlap(dir)?;
         // The points need not be support points, so they are stored without a direction.
-        Ok(found.corners.map(|point| {
+        Ok(found.corners().map(|point| {
             let pair = VertexSet::<SMALL_VERTICES>::pair_of_entry(set.push(&Vec3::zeros(), &point));
             Vertex { w: point.v, pair }
         }))
