@@ -111,7 +111,7 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
     let mut last_failed_key = -1.0;
     // The normal of the face above which the last point was inserted.
     let mut last_normal = Vec3::zeros();
-    // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
+    // Terminates: each turn adds a vertex to the set or a corner.
     loop {
         let closest = polytope.closest_face();
         polytope.set_size(query.scale.size());
@@ -127,9 +127,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         let is_inside = closest.key >= 0.0;
         trace::lower_bound(larger(closest.key, 0.0).sqrt());
         if is_inside && closest.key >= target_key {
-            if polytope.refresh_keys(target_key) {
-                continue;
-            }
             return Ok(Some(Status::Converged));
         }
         // While the origin is outside, the buffers are the only limit: the caller's limits must not

@@ -124,7 +124,7 @@ pub struct EpaPolytope<const F: usize> {
     error: f64,
     /// The |N|² below which planes are computed from their corners.
     min_n2: f64,
-    /// [`KEY_ERROR_REL`], or 0 if keys are recomputed exactly ([`EpaPolytope::refresh_keys`]).
+    /// [`KEY_ERROR_REL`], or 0 if planes are exact: the tolerance is finer than the error of keys.
     key_error: f64,
 }
 
@@ -401,27 +401,6 @@ impl<const F: usize> EpaPolytope<F> {
             face: (key.to_bits() & FACE_MASK) as usize,
             key,
         }
-    }
-
-    /// Recomputes the keys if planes are exact, since the tolerance is then finer than the error of keys. Returns
-    /// whether a face is closer than `key`; its key is lowered accordingly.
-    #[inline(always)]
-    pub fn refresh_keys(&mut self, key: f64) -> bool {
-        !(self.key_error > 0.0) && self.recompute_keys(key)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn recompute_keys(&mut self, key: f64) -> bool {
-        let mut is_closer = false;
-        for f in 0..self.used.min(F) {
-            let (square, _) = self.plane(f).signed_square();
-            if self.keys[f] < f64::INFINITY && square < key {
-                self.keys[f] = Self::key(f, square * (1.0 - KEY_ERROR_REL));
-                is_closer = true;
-            }
-        }
-        is_closer
     }
 
     /// Inserts the corner `new`. `first`: a face that it is above by more than `level`, metres. `corner` returns the point
