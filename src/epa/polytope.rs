@@ -271,19 +271,10 @@ impl<const F: usize> EpaPolytope<F> {
     }
 
     /// Returns whether there is room for more than `count` corners: a closed surface of C corners has 2 C − 4 faces, and an
-    /// insertion makes a few new faces before it frees the old ones.
+    /// insertion makes a few new faces before it frees the old ones. Corners that have become hidden count too.
     #[inline(always)]
     pub fn has_room(&self, count: usize) -> bool {
-        // Corners that have become hidden count here.
-        self.num_corners + count < F / 2 || self.has_room_left(count)
-    }
-
-    /// Continues [`EpaPolytope::has_room`] without the hidden corners, which bound the number of insertions.
-    #[cold]
-    #[inline(never)]
-    fn has_room_left(&self, count: usize) -> bool {
-        let corners = self.faces().count() / 2 + 2;
-        corners + count < F / 2 && self.num_corners < 2 * F
+        self.num_corners + count < F / 2
     }
 
     #[inline(always)]
