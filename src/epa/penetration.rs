@@ -948,4 +948,41 @@ mod tests {
             assert!((hit.depth - (1.0 - at.norm())).abs() <= TOLERANCE);
         }
     }
+
+    /// The support point in place of a corner: without it the mean distance is half as large again.
+    #[test]
+    fn witness_points_of_ellipsoids_are_apart_along_the_direction() {
+        let mut r = Random::new(93);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for _ in 0..500 {
+            let radii = Vec3::from_fn(|_, _| r.within(0.1, 0.8));
+            let at = r.direction() * r.within(0.05, 0.6);
+            let body = ellipsoid(radii, r.rotation(), Vec3::zeros());
+            let md = difference(body, ball(at, r.within(0.1, 0.6)));
+            let center = center(-at);
+            let settings = Settings::new(TOLERANCE.max(1e-6));
+            let request = EpaRequest {
+                center: Some(&center),
+                ray: at.normalize(),
+                limits: EpaLimits::new(&settings, 1e-3, MAX_DEFAULT_POINTS),
+                wants_points: true,
+            };
+            let mut query = SupportQuery::new(&md, Some(&center), TOLERANCE.max(1e-6));
+            let Ok(first) = query.evaluate_first(&request.ray, false) else {
+                continue;
+            };
+            let mut set = VertexSet::EMPTY;
+            let cold = WarmStart::COLD;
+            let hit = penetration(&mut query, &first, &request, None, &mut set, &cold);
+            if let Ok(hit) = hit {
+                sum += (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
+                count += 1.0;
+            }
+        }
+        assert!(
+            count > 300.0 && sum / count < 1e-4,
+            "{} {count}",
+            sum / count
+        );
+    }
 }
