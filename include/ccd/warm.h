@@ -9,6 +9,7 @@
  *
  *   codes        returned by every call that fills a struct
  *   states       ccd_warm_t, ccdWarmGuess, ccdWarmFlip
+ *   flags        CCD_WANT_: outputs that are computed only if they are requested
  *   penetration  ccdPenetration: overlap, depth, direction, contact position
  *   overlap      ccdIntersect
  *   distance     ccdSignedDistance
@@ -167,7 +168,7 @@ CCD_EXPORT void ccdWarmGuess(ccd_warm_t *warm, const ccd_vec3_t *dir);
 CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 
 
-/* Penetration: overlap, depth, direction, contact position. The default call. */
+/* Flags: outputs that a call computes only if they are requested. */
 
 /**
  * Requests pos. Costs, on average, 3 to 7 support points where the face of one object contains that of
@@ -185,6 +186,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
  * Requests all of these.
  */
 #define CCD_WANT_ALL 3
+
+
+/* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
  * Result of a penetration query. A field that was not requested is zero.

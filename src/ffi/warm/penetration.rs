@@ -13,15 +13,6 @@ use crate::math::Real;
 use crate::query::Solver;
 use crate::types::{Penetration, Solution};
 
-/// Requests pos. Costs, on average, 3 to 7 support points where the face of one object contains that of
-/// the other, 9 where neither does; in all tests at most 24. May call one support function without the
-/// other.
-pub const CCD_WANT_POS: c_uint = 1;
-/// Requests point1 and point2, at no cost.
-pub const CCD_WANT_POINTS: c_uint = 2;
-/// Requests all of these.
-pub const CCD_WANT_ALL: c_uint = 3;
-
 /// Result of a penetration query. A field that was not requested is zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
