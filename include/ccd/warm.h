@@ -220,7 +220,7 @@ typedef struct ccd_penetration_t {
    * deeper the overlap, the nearer it is instead to a point between the centers, beside that plane. At
    * most half the depth from both objects, within the tolerance. Root mean square error for objects
    * of a quarter metre and depths up to a millimetre: 0.2 mm for faces of 3 to 6 corners, and regular
-   * ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 7 mm for round
+   * ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 8 mm for round
    * objects and discs; 12 mm for flat bars with a curved underside; 15 mm for a cone on its side; in
    * single precision 1 mm more. For greater depths 2 % of the smaller object's radius at a depth of 3 %
    * of it, 6 % at 10 %, 20 % at 30 %. In a motion of 0.01 degrees pos of leaning discs jumps by at most

@@ -649,7 +649,7 @@ static void check_pressure(int every, int seed)
     static const double corner[3] = {1, -1, 0}, X[3] = {1, 0, 0}, Y[3] = {0, 1, 0}, Z[3] = {0, 0, 1}, XY[3] = {1, 0.6, 0};
 /* max_rms, max_step */
 #define FLAT 3e-3, 1e-3
-#define ROUND 7e-3, 5e-3
+#define ROUND 7.5e-3, 5e-3
 /* Its radius falls along the line that it lies on, and so does the correction for it: where the
  * deepest point jumps along the line, pos follows in part. */
 #define TAPERED 15e-3, 50e-3
