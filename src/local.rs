@@ -54,7 +54,7 @@ use crate::minkowski::tuning::{
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
-use crate::types::{Settings, Solution, Status};
+use crate::types::{Direction, Settings, Solution, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
 /// minimum, the longest that ends with one takes 45; with 48, 2 % of coincident centers end so at fine tolerances. A power
@@ -122,17 +122,15 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     iterations: u64,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. `is_general`:
-/// true if `start` is in general position. The set may have entries. Any status but [`Status::Converged`] comes with the
-/// upper bound and the vertices of its support point.
+/// Finds a local minimum of the penetration depth from `start`, by the steps at the head of this file. The set may have
+/// entries. Any status but [`Status::Converged`] comes with the upper bound and the vertices of its support point.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    start: &Vec3,
-    is_general: bool,
+    start: &Direction,
     settings: &Settings,
 ) -> Result<Solution, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
@@ -149,25 +147,25 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         settings,
         iterations: 0,
     };
-    let ray = walk.start(start, is_general)?;
+    let ray = walk.start(start)?;
     walk.run(ray)
 }
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Evaluates the start direction, and others if it is no good start. Returns the first ray.
-    fn start(&mut self, start: &Vec3, is_general: bool) -> Result<Vec3, Stop> {
+    fn start(&mut self, start: &Direction) -> Result<Vec3, Stop> {
         trace::stage("local search");
-        let first = self.query.evaluate_first(start, is_general)?;
+        let first = self.query.evaluate_first(start)?;
         self.set.push(&self.query.upper.dir, &first);
         if !self.is_centered {
             // Not stored in the set: as a corner it would make the portals wide.
-            let opposite = self.query.evaluate_point(&-start)?;
+            let opposite = self.query.evaluate_point(&-start.n)?;
             self.interior = (first.v + opposite.v) * 0.5;
         }
-        let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
+        let to_origin = normalise_unscaled(&-self.interior).unwrap_or(start.n);
         // Without centers, or if the start direction leads to the far side: evaluate the direction from the interior
         // point to the origin too.
-        if !self.is_centered || to_origin.dot(start) < 0.0 {
+        if !self.is_centered || to_origin.dot(&start.n) < 0.0 {
             self.query.evaluate(self.set, &to_origin)?;
         }
         Ok(self.query.upper.dir)
@@ -309,13 +307,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                         along_normal = true;
                         continue;
                     }
-                    let plane = SupportPlane {
-                        // As it was evaluated.
-                        dir: self.set.dir(sample.pair.a.into()),
-                        depth: sample.h,
-                        point: self.set.point(sample.pair),
-                        tilt: self.query.tilt(),
-                    };
+                    let plane = self.query.plane(self.set, sample.pair.a.into());
                     return Ok(match is_inside {
                         true => Step::Face(face, plane),
                         false => Step::Ray(face.normal),
@@ -542,9 +534,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             depth: *depth,
             dir: *dir,
             normal: *dir,
+            is_general: plane.direction().is_general(),
             point1,
             point2,
-            is_general: plane.is_general(),
             ..self.upper_bound(Status::Converged)
         };
         // A face and its support plane differ by the rounding of both.
@@ -563,11 +555,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             depth,
             dir,
             normal: dir,
+            is_general: self.query.upper.direction().is_general(),
             point1: point.v1,
             point2: point.v2,
             iterations: self.iterations,
             status,
-            is_general: self.query.upper.is_general(),
             ..Solution::default()
         }
     }
@@ -598,7 +590,6 @@ mod tests {
     use super::*;
     use crate::math::{EPSILON, perpendicular};
     use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
     };
@@ -636,7 +627,8 @@ mod tests {
         let before = md.supports();
         let mut query = SupportQuery::new(md, center.as_ref(), 0.0);
         let mut set = VertexSet::<MAX_WALK_POINTS>::EMPTY;
-        let found = penetration(&mut query, &mut set, start, false, settings);
+        let start = Direction::exact(*start);
+        let found = penetration(&mut query, &mut set, &start, settings);
         (found, md.supports() - before)
     }
 

@@ -182,9 +182,9 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support::Fault;
-    use crate::minkowski::support_query::Direction;
     use crate::minkowski::vertex_set::{Vertex, VertexPair};
     use crate::test_shapes::{corners, difference, hull};
+    use crate::types::Direction;
 
     const LIMITS: EpaLimits = EpaLimits {
         gap: GapLimit::new(if EPSILON < 1e-10 { 1e-9 } else { 1e-4 }, 0.0),

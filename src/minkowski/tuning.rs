@@ -4,8 +4,6 @@
 //! The tuned constants that several files of the search for a depth or a distance use, with what was tried. One that a
 //! single file uses is in that file.
 
-use crate::math::EPSILON;
-
 // Gaps: the allowed difference of the bounds; in a local search the tolerance.
 
 /// The height above a plane, in allowed gaps, from which a known difference is taken in place of a support call. Measured
@@ -18,13 +16,6 @@ pub const MIN_GAIN_GAPS: f64 = 0.25;
 /// The largest difference of an evaluated support value from a prediction that agrees with it, relative to the predicted
 /// gain. See [`INSERT_HEIGHT_GAPS`].
 pub const MAX_MISS_REL: f64 = 0.25;
-
-// General position.
-
-/// The least useful tilt, radians, 1e-10. Measured with ODE's cylinder of radius 0.3, 20,000 rotations, the share of points
-/// that are off by more than 12 µm, and that are low by more than 1 mm: without tilt 29 %, 16 %; 2.5e-12 66 %, 0.01 %. With
-/// this one no depth is (`ode_cylinder`).
-pub const MIN_TILT_RAD: f64 = 4.5e5 * EPSILON;
 
 // Attempts that may fail before another way is taken.
 
