@@ -44,12 +44,12 @@ use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
 use crate::minkowski::newton::newton_step;
-use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
+use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILED_PREDICTIONS, MAX_MISS_REL,
-    MIN_GAIN_GAPS, SAME_VALLEY_COS,
+    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL,
+    MIN_GAIN_GAPS, NEGLIGIBLE_GAPS, SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
@@ -63,12 +63,7 @@ pub const MAX_WALK_POINTS: usize = 64;
 /// The difference of two depths, in tolerances, up to which they are equal. The rest of the tolerance is left for the error of
 /// the witness points. Answers are insensitive to 0.25; with 1.5 one proof in 420 more has
 /// witness points that are not the depth apart.
-const EQUAL_TOLERANCES: f64 = 0.75;
-/// The angle, radians, between the normal of a narrow face and the direction of the upper bound up to which they are one
-/// minimum. Measured: without it local searches of cones, cylinders and ellipsoids take 2 to 3 % more support points.
-const SAME_MINIMUM_RAD: f64 = 0.25 * CONFIRM_TILT_RAD;
-/// The squared angle, radians, up to which two directions are equal. Answers are insensitive: 1e-16 to 1e-6.
-const SAME_DIRECTION_ANGLE2: f64 = 1e-10;
+const EQUAL_TOLERANCES: f64 = 1.0 - NEGLIGIBLE_GAPS;
 
 /// The next step of a walk.
 enum Step {
@@ -266,7 +261,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let mut prediction = None;
                 let worthwhile = self.query.upper.depth - MIN_GAIN_GAPS * tolerance;
                 if !along_normal {
-                    if self.failures < MAX_FAILED_PREDICTIONS {
+                    if self.failures < MAX_FAILURES {
                         prediction = self.predict(&face);
                     }
                     if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
@@ -329,7 +324,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
-                lesser(SAME_MINIMUM_RAD * SAME_MINIMUM_RAD, tolerance / upper.depth)
+                lesser(CONFIRM_RANGE_RAD[0].powi(2), tolerance / upper.depth)
             } else {
                 0.25 * cone * cone
             };
@@ -582,7 +577,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 /// Returns whether two unit vectors count as the same, by their difference: the product of vectors that are rounded to single
 /// precision differs from 1 by as much as that of vectors 3e-4 rad apart.
 fn is_same(a: &Vec3, b: &Vec3) -> bool {
-    (a - b).norm_squared() <= SAME_DIRECTION_ANGLE2
+    (a - b).norm_squared() <= MIN_ANGLE2
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_MISS_REL, MAX_STALLS, MIN_GAIN_GAPS};
+use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL, MIN_GAIN_GAPS};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
@@ -167,7 +167,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
                 }
                 closest = self.upper;
             }
-            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
+            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_FAILURES) else {
                 return Ok(Status::Rounding);
             };
             is_step = !self.evaluate_prediction(&dir, self.gap(goal))?;

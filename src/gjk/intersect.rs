@@ -31,7 +31,7 @@ use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
-use crate::minkowski::tuning::MAX_STALLS;
+use crate::minkowski::tuning::MAX_FAILURES;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{FAR_UPPER_REL, MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
@@ -175,7 +175,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
         // Negated for NaN.
         if !(distance2 > eps2 && distance2 < closest2) {
             stalls += 1;
-            if stalls > MAX_STALLS {
+            if stalls > MAX_FAILURES {
                 break;
             }
         }

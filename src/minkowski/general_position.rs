@@ -38,6 +38,7 @@
 
 use crate::math::{EPSILON, POLE, Vec3, lesser};
 use crate::minkowski::tolerance::Scale;
+use crate::minkowski::tuning::NEGLIGIBLE_GAPS;
 use crate::types::{Direction, Solution};
 
 /// The largest tilt, radians.
@@ -48,7 +49,7 @@ pub const MAX_TILT_RAD: f64 = if HAS_TILT { 1e-8 } else { 0.0 };
 pub const MIN_TILT_RAD: f64 = if HAS_TILT { 4.5e5 * EPSILON } else { 0.0 };
 /// The largest increase of the support value by the tilt, in tolerances. Measured: with 0.01 the same answers, but fewer
 /// tolerances allow a tilt; with 5 depths are off by more than the tolerance.
-const MAX_RISE_TOLERANCES: f64 = 0.25;
+const MAX_RISE_TOLERANCES: f64 = NEGLIGIBLE_GAPS;
 /// Whether directions are tilted at all.
 pub const HAS_TILT: bool = cfg!(not(feature = "single"));
 /// The largest |z| of a unit direction that is turned about [`POLE`]; others are turned about POLE without its z. Each

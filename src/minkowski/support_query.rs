@@ -25,13 +25,10 @@ use crate::math::{Vec3, from_real, larger, lesser, to_real};
 use crate::minkowski::general_position::{HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, TiltRule};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
+use crate::minkowski::tuning::NEGLIGIBLE_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
 use crate::types::Direction;
-
-/// The height of a known difference above the support plane of the result, in tolerances, from which the support functions
-/// contradict themselves. A lower one leaves the depth right within the tolerance. Answers are insensitive: 0 to 4.
-const CONTRADICTION_TOLERANCES: f64 = 0.25;
 
 /// Reason why an evaluation of the support function ends the query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -394,13 +391,14 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Returns whether a support function contradicts itself at the upper bound: a known difference is beyond the
-    /// support plane by more than rounding and [`CONTRADICTION_TOLERANCES`].
+    /// support plane by more than rounding and [`NEGLIGIBLE_GAPS`]: a lower one leaves the depth right. Answers are
+    /// insensitive: 0 to 4.
     #[inline(always)]
     pub fn is_inconsistent<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let SupportPlane { dir, depth, .. } = self.upper;
         let height = dir.dot(&set.farthest_vertex(&dir).w) - depth;
         let tolerance = self.scale.tolerance(self.tilt_rule.tolerance);
-        height > larger(self.scale.tie_eps(), CONTRADICTION_TOLERANCES * tolerance)
+        height > larger(self.scale.tie_eps(), NEGLIGIBLE_GAPS * tolerance)
     }
 }
 
