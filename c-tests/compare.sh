@@ -11,7 +11,7 @@
 #     --runs N     then run the program N times on each library, in turn, without all this, and compare its times
 #     --limit S    end each run after S seconds (default with --runs: 120): some programs hang on libccd
 #     --no-times   time no queries: fewer calls of the callbacks
-#     --libccd F   the libccd to compare with (default: the program's; where that is this library, the system's)
+#     --libccd F   the libccd to compare with (default: the program's, also one in a Python wheel; else the system's)
 #     --library F  a built libccd.so of this library (default: built now)
 #     --recorder D  a folder with this script's own programs (default: compiled now)
 # The program may use libccd itself or through FCL, ODE, MuJoCo 2 or DART, or load it later, as in `compare.sh python
@@ -129,18 +129,20 @@ build() {
 
 # shellcheck source=c-tests/tools/libccd.sh
 . "$here/tools/libccd.sh"
+loaded=0 # 1: one that the program loads later, if it does, is its own
 if [ -z "$libccd" ]; then
+    [ $linked = yes ] || loaded=1
     [ $linked != yes ] || libccd=$(printf '%s\n' "$libraries" | loaded_libccd)
     [ -n "$libccd" ] || libccd=$(system_libccd)
     libccd=$(other_libccd "$libccd")
 fi
-[ -n "$libccd" ] && [ -r "$libccd" ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
-! grep -q ccdImplementation "$libccd" || fail "$libccd is this library, installed: name a libccd with --libccd FILE"
+[ -r "$libccd" ] || [ $loaded = 1 ] || fail "no libccd.so.2 to compare with; Debian's package is libccd2"
+[ -z "$libccd" ] || ! grep -q ccdImplementation "$libccd" || fail "$libccd is this library, installed: name a libccd with --libccd FILE"
 
 # Not in /tmp, which may be mounted noexec, unless this folder is another user's.
 counts=$(mktemp -d "$work/run.XXXXXX" 2>/dev/null) || counts=$(mktemp -d)
 trap 'rm -rf "$counts"' EXIT
-cp -L "$libccd" "$counts/theirs.so"
+[ -z "$libccd" ] || cp -L "$libccd" "$counts/theirs.so"
 cp -L "$library" "$counts/ours.so"
 if [ -n "$keep" ]; then
     mkdir -p "$keep"
@@ -187,8 +189,8 @@ stopped=
 if [ -n "$limit" ]; then
     if [ -t 0 ]; then exec 3</dev/null; else exec 3<&0; fi # that group may not read from the terminal
 fi
-limited env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="$counts/theirs.so" CCD_COMPARE_NAME="$libccd" \
-    CCD_COMPARE_OURS="$counts/ours.so" CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" \
+limited env CCD_COMPARE_DIR="$counts" CCD_COMPARE_THEIRS="${libccd:+$counts/theirs.so}" CCD_COMPARE_NAME="$libccd" \
+    CCD_COMPARE_LOADED="$loaded" CCD_COMPARE_OURS="$counts/ours.so" CCD_COMPARE_BASE="$base" CCD_COMPARE_EVERY="$every" CCD_COMPARE_TIMES="$times" \
     CCD_COMPARE_KEEP="$keep" LD_PRELOAD="$preload${LD_PRELOAD:+ $LD_PRELOAD}" "$program" "$@"
 own_code=$code
 

@@ -7,6 +7,7 @@
 #   setup.sh lab    those, and the engines of lab/: MuJoCo and DART, and with DART Bullet
 #   setup.sh main   packages of the main job
 #   setup.sh compare  packages of compare.sh: those of the main job, and a C++ compiler
+#   setup.sh archive  packages of cmake/packages/linux.sh and wheel.sh
 #   setup.sh check  installs nothing; prints the tests' missing packages in one line
 
 set -eu
@@ -54,7 +55,7 @@ apt_install() {
 }
 
 case $job in
-main | compare)
+main | compare | archive)
     oldest=$(rust_version Cargo.toml)
     from="Debian 12's or 13's rustc-web and cargo-web, Debian 13's rustc and cargo, or https://rustup.rs"
     ;;
@@ -63,7 +64,7 @@ tests | lab | check)
     from="Debian 12's or 13's rustc-web and cargo-web, or https://rustup.rs"
     ;;
 *)
-    echo "usage: setup.sh [tests|lab|main|compare|check]" >&2
+    echo "usage: setup.sh [tests|lab|main|compare|archive|check]" >&2
     exit 2
     ;;
 esac
@@ -87,7 +88,17 @@ if command -v cc >/dev/null 2>&1; then
 fi
 
 [ "$job" = main ] || want_command c++ g++
-if [ "$job" != main ] && [ "$job" != compare ]; then
+case $job in
+main | compare) ;;
+archive)
+    want_command cmake cmake
+    want_command make make
+    want_command git git
+    want_command musl-gcc musl-tools
+    echo '#include <fcl/config.h>' | c++ -E -x c++ -o /dev/null - 2>/dev/null || missing="$missing libfcl-dev"
+    python3 -c 'import ensurepip' 2>/dev/null || missing="$missing python3-venv"
+    ;;
+*)
     want_command objcopy binutils
     want_command pkg-config pkg-config
     want_command cmake cmake
@@ -100,7 +111,8 @@ if [ "$job" != main ] && [ "$job" != compare ]; then
         want_package libccd-dev libfcl-dev libode-dev libclang-dev
         [ "$job" != lab ] || want_package libmujoco-dev libdart-dev
     fi
-fi
+    ;;
+esac
 
 if [ "$job" = check ]; then
     [ -n "$missing" ] || exit 0

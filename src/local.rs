@@ -22,8 +22,8 @@
 //!    upper bound, or agrees with the evaluated value within most of the tolerance, is a candidate.
 //! 5. *Normal*: if the foot is outside the face, the next ray is along the face's normal, without a callback. If it is
 //!    inside, the normal is evaluated, and is a candidate if no point is above the face.
-//! 6. *Confirmation* of a candidate: a foot on an edge may be a saddle, and a sharp tip can satisfy the sphere fit.
-//!    Both are tested by directions tilted by [`CONFIRM_TILT_RAD`], which are evaluated if no known direction is near.
+//! 6. *Confirmation* of a candidate: a face, unless the upper bound is lower; the prediction of a model, which a sharp tip
+//!    can satisfy, by directions tilted by [`CONFIRM_TILT_RAD`], which are evaluated if no known direction is near.
 //! 7. *Overlap*: proven if the tetrahedron of interior point and face contains the origin, else by GJK; or an evaluated
 //!    direction separates.
 //!
@@ -197,7 +197,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 Step::Ray(next) => next,
                 Step::End(status) => return Ok(self.upper_bound(status)),
                 Step::Face(face, plane) => {
-                    if self.confirm_face(&face, &plane, tolerance)? {
+                    // Else a lower valley is known: the walk continues there.
+                    if !(plane.depth > self.query.upper.depth + MIN_GAIN_GAPS * tolerance) {
                         return self.result(&face, &plane, None);
                     }
                     self.query.upper.dir
@@ -411,25 +412,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     fn is_minimum(&self, prediction: &Prediction, h: f64, tolerance: f64) -> bool {
         (h - prediction.value).abs() <= EQUAL_TOLERANCES * tolerance
             && (prediction.model == Model::Sphere || self.vertices_coincide(tolerance))
-    }
-
-    /// Returns whether a face is a minimum. A foot on an edge may be a saddle.
-    fn confirm_face(
-        &mut self,
-        face: &Face,
-        plane: &SupportPlane,
-        tolerance: f64,
-    ) -> Result<bool, Stop> {
-        // The upper bound is lower: the walk continues from there.
-        if plane.depth > self.query.upper.depth + MIN_GAIN_GAPS * tolerance {
-            return Ok(false);
-        }
-        // The angle of the foot's distance from the closest edge is at most its tangent.
-        if !(2.0 * face.foot_depth() < CONFIRM_TILT_RAD * face.offset) {
-            return Ok(true);
-        }
-        let axis = face.perpendicular_to_longest_edge();
-        self.is_lowest(&plane.dir, &[axis, -axis], None, tolerance)
     }
 
     /// Returns whether the upper bound, which a model predicts, is a minimum. A sharp tip can satisfy the sphere fit.

@@ -273,6 +273,7 @@ pub struct Contact {
     pub point2: [Real; 3],
     /// Depth at the contact, metres; negative if the shapes are apart there.
     pub depth: Real,
-    /// Contact id: the same while the contact moves with either shape, never 0; 0 without a cache.
+    /// Contact id: the same while the contact moves with either shape, never 0; 0 without a cache. When a contact vanishes, a new
+    /// one within a quarter of the overlap's extent takes its id.
     pub id: u32,
 }

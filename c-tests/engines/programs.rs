@@ -180,23 +180,22 @@ pub fn fcl_distance() -> [Method; 3] {
 pub fn with_fcl_preload(program: Program) -> [Method; 3] {
     let [theirs, ours] = on_both(program);
     let preloaded = ours.clone().named("this library and `libwarmccd-fcl.so`");
-    [theirs, ours, preloaded.preload(fcl_preload())]
+    [theirs, ours, preloaded.preload(preload_library("libwarmccd-fcl.so"))]
 }
 
-/// Builds `libwarmccd-fcl.so` as cmake/README.md says; the flags are the tests' own.
-pub fn fcl_preload() -> PathBuf {
+/// Builds the libraries that are preloaded for FCL as cmake/README.md says, and returns one; the flags are the tests' own.
+pub fn preload_library(name: &str) -> PathBuf {
     let build = output_dir().join("fcl");
     let mut cmake = Command::new("cmake");
-    cmake
-        .arg("-S")
-        .arg(root().join("cmake"))
-        .arg("-B")
-        .arg(&build)
-        .args(["-DCCD_FCL=ON", "-DCMAKE_CXX_FLAGS=-Wextra -Werror"]);
+    cmake.arg("-S").arg(root().join("cmake")).arg("-B").arg(&build).args([
+        "-DCCD_FCL=ON",
+        "-DCMAKE_C_FLAGS=-Wextra -Werror",
+        "-DCMAKE_CXX_FLAGS=-Wextra -Werror",
+    ]);
     cmake.arg(format!("-DCCD_CARGO_TARGET_DIR={}", cargo_dir().display()));
     let lock = locked(&output_dir().join("fcl.lock"));
     must_succeed(&mut cmake, "cmake");
     must_succeed(Command::new("cmake").arg("--build").arg(&build), "cmake --build");
     drop(lock);
-    build.join("lib/libwarmccd-fcl.so")
+    build.join("lib").join(name)
 }

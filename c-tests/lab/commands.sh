@@ -111,10 +111,11 @@ END
 run "a wrong answer, repeated" "right$" 's/FILE/--trace kept\/libccd-deep.txt/' <<'END'
 sh c-tests/replay.sh FILE
 END
-run "FCL's signed distance" "^depth 0.100" "" <<'END'
+run "what is preloaded for FCL" "^depth 0.100" "" <<'END'
 cmake -S cmake -B build -DCCD_FCL=ON
 cmake --build build
 LD_LIBRARY_PATH=$PWD/build/lib LD_PRELOAD=libwarmccd-fcl.so ./program
+LD_LIBRARY_PATH=$PWD/build/lib LD_PRELOAD=libwarmccd-middle.so ./program
 END
 run "preloading in Python" "^depth 0.100" 's/ python / python3 /' <<'END'
 LD_LIBRARY_PATH=$PWD/target/release LD_PRELOAD=libccd.so python app.py
@@ -160,6 +161,7 @@ cargo test --test integration support_counts -- --nocapture
 cargo test --test integration swap::
 cargo test --test integration record::
 cargo test --test integration pos_
+cargo test --test integration pos_in_the_middle -- --nocapture
 cargo test --test integration known_costs
 cargo test --test integration no_panic
 cargo test -p lab -- --nocapture libraries_are static_link
@@ -167,6 +169,7 @@ cargo test -p lab charts_test::
 cargo test -p lab paper_test::
 cargo test -p lab compare::
 cargo test -p lab fcl::
+cargo test -p lab mujoco_cylinders
 END
 run "tests with another compiler" "ok. [1-9]" 's/$/ cargo test --test integration contract::distances/' clang clang++ <<'END'
 CC=clang CXX=clang++
@@ -247,15 +250,34 @@ END
 elsewhere "linux-inside.sh, in the archive" <<'END'
 linux.sh OUT
 sh cmake/packages/linux.sh OUT
+prebuilt.sh SUITE OUT
+prebuilt.sh bookworm
+prebuilt.sh trixie
 try-linux.sh SUITE ARCHIVE
 try-linux.sh bookworm
 try-linux.sh trixie
 ./run-on-warmccd.sh PROGRAM
 LD_LIBRARY_PATH=$PWD/lib PROGRAM
+LD_LIBRARY_PATH=$PWD/lib LD_PRELOAD=libwarmccd-fcl.so PROGRAM
+LD_LIBRARY_PATH=$PWD/lib LD_PRELOAD=libwarmccd-middle.so PROGRAM
 cc example.c -Iinclude lib/libccd.a -Wl,--gc-sections -lm -o example && ./example
 cc example.c -Iinclude lib/libccd.so.2 -lm -Wl,-rpath,"$PWD/lib" -o example && ./example
 cc example.c $(PKG_CONFIG_PATH=$PWD/lib/pkgconfig pkg-config --cflags --libs ccd) -Wl,-rpath,"$PWD/lib" -o example && ./example
 cmake -S . -B build -DCMAKE_PREFIX_PATH=/path/to/this/folder
+END
+elsewhere "try-wheel.sh, without a compiler and in a build" <<'END'
+sh cmake/packages/wheel.sh OUT
+wheel.sh OUT [ARCHIVE]
+try-wheel.sh SUITE WHEEL
+try-wheel.sh bookworm
+try-wheel.sh trixie
+warmccd compare python app.py
+warmccd run python app.py
+warmccd run --signed-distance python app.py
+warmccd run --middle python app.py
+include=$(python -c 'import warmccd; print(warmccd.get_include())')
+library=$(python -c 'import warmccd; print(warmccd.get_library())')
+cc app.c -I"$include" "$library" -lm -Wl,-rpath,"${library%/*}"
 END
 elsewhere ".ci/run" <<'END'
 cargo test

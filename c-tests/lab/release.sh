@@ -43,6 +43,10 @@ campaign() {
 packages() {
     sh "cmake/packages/$1.sh" "$2"
 }
+prebuilt() {
+    sh cmake/packages/prebuilt.sh "$1" "$logs/$1" && sh cmake/packages/try-linux.sh "$1" "$logs/$1"/*.tar.gz &&
+        sh cmake/packages/try-wheel.sh "$1" "$logs/$1"/*.whl
+}
 
 sh c-tests/setup.sh lab
 step charts cargo test --no-fail-fast -p lab charts_test::
@@ -56,6 +60,7 @@ step libccd-tests sh c-tests/lab/libccd_tests.sh
 step price cargo test -p lab price::
 step reasons sh c-tests/lab/reasons.sh
 step ode-demos sh c-tests/lab/ode_demos.sh
+step fuzz sh c-tests/lab/fuzz/fuzz.sh
 step miri cargo test -p lab miri::
 step simulations cargo test --no-fail-fast -p lab simulations::
 step long cargo run --release -p lab --bin engines -- long
@@ -74,6 +79,8 @@ step jumps campaign jumps
 step truth campaign truth
 step bookworm packages tests bookworm
 step trixie packages tests trixie
+step prebuilt-bookworm prebuilt bookworm
+step prebuilt-trixie prebuilt trixie
 step arm64 packages cross arm64
 step i386 packages cross i386
 step platforms sh cmake/packages/platforms.sh

@@ -19,10 +19,14 @@ other_libccd() {
     {
         echo "$1"
         PATH=$PATH:/usr/sbin:/sbin ldconfig -p 2>/dev/null | sed -n 's|.*libccd\.so\.2 .*=> \(/.*\)|\1|p'
-    } | while read -r file; do
-        if [ -r "$file" ] && ! grep -q ccdImplementation "$file"; then
-            echo "$file"
-            break
-        fi
-    done
+    } | {
+        found=
+        # To the end: sed would report a closed pipe.
+        while read -r file; do
+            if [ -z "$found" ] && [ -r "$file" ] && ! grep -q ccdImplementation "$file"; then
+                echo "$file"
+                found=1
+            fi
+        done
+    }
 }

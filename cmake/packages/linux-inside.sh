@@ -11,10 +11,9 @@ set -eu
 [ $# -eq 2 ] || { echo "usage: linux-inside.sh ARCHIVE REPOSITORY" >&2; exit 2; }
 archive=$(realpath "$1")
 repository=$(realpath "$2")
-if command -v cargo rustc >/dev/null; then
-    echo "linux-inside.sh: there is a Rust here" >&2
-    exit 1
-fi
+for tool in cargo rustc; do
+    ! command -v $tool || { echo "linux-inside.sh: there is $tool here" >&2; exit 1; }
+done
 rm -rf folder
 mkdir folder
 cd folder
@@ -59,10 +58,21 @@ cc -std=gnu99 -O2 -w -I"$repository/c-tests" -idirafter include "$repository/c-t
 expect "of 500 overlap" ./run-on-warmccd.sh ./fcl
 expect "^this library  *0  *0  *0  *0  *0 " ./run-on-warmccd.sh ./fcl
 expect "^this library  *0  *0  *0  *0  *0 " ./run-on-warmccd.sh ./ode 1 400 40 pile
+c++ -O2 -w -DOURS_ALONE -I"$repository/c-tests" -Iinclude -I/usr/include/eigen3 "$repository/c-tests/engines/fcl_distance.cpp" \
+    -lfcl -lccd -o distance
+expect "^function libfcl" ./distance 200
+expect "^kissing .* threw 0 endless 0 wrong 0 outside 0 unequal 0" \
+    env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD=libwarmccd-fcl.so ./distance 200
 
 echo "== python-fcl's wheel"
+program=$repository/c-tests/lab/engines/wheel.py
 python3 -m venv venv
 venv/bin/pip install -q python-fcl
-expect "depth 0\.\(49999\|5000\)" venv/bin/python "$repository/c-tests/lab/engines/wheel.py"
-expect "depth 0\.\(09999\|1000\)" env LD_PRELOAD="$PWD/lib/libccd.so.2" venv/bin/python "$repository/c-tests/lab/engines/wheel.py"
+expect "depth 0\.\(49999\|5000\)" venv/bin/python "$program"
+preload=libccd.so.2
+for aside in "0.000" "0.0[1-9]"; do
+    expect "depth 0\.\(09999\|1000\)" env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD="$preload" venv/bin/python "$program"
+    expect "aside $aside" env LD_LIBRARY_PATH="$PWD/lib" LD_PRELOAD="$preload" venv/bin/python "$program"
+    preload="libwarmccd-middle.so libccd.so.2"
+done
 echo "linux-inside.sh: all is well"

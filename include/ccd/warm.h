@@ -9,6 +9,7 @@
  *
  *   codes        returned by every call that fills a struct
  *   states       ccd_warm_t, ccdWarmGuess, ccdWarmFlip
+ *   flags        CCD_WANT_: outputs that are computed only if they are requested
  *   penetration  ccdPenetration: overlap, depth, direction, contact position
  *   overlap      ccdIntersect
  *   distance     ccdSignedDistance
@@ -167,7 +168,7 @@ CCD_EXPORT void ccdWarmGuess(ccd_warm_t *warm, const ccd_vec3_t *dir);
 CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
 
 
-/* Penetration: overlap, depth, direction, contact position. The default call. */
+/* Flags: outputs that a call computes only if they are requested. */
 
 /**
  * Requests pos. Costs, on average, 3 to 7 support points where the face of one object contains that of
@@ -185,6 +186,9 @@ CCD_EXPORT void ccdWarmFlip(ccd_warm_t *warm);
  * Requests all of these.
  */
 #define CCD_WANT_ALL 3
+
+
+/* Penetration: overlap, depth, direction, contact position. The default call. */
 
 /**
  * Result of a penetration query. A field that was not requested is zero.
@@ -216,7 +220,7 @@ typedef struct ccd_penetration_t {
    * deeper the overlap, the nearer it is instead to a point between the centers, beside that plane. At
    * most half the depth from both objects, within the tolerance. Root mean square error for objects
    * of a quarter metre and depths up to a millimetre: 0.2 mm for faces of 3 to 6 corners, and regular
-   * ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 7 mm for round
+   * ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 8 mm for round
    * objects and discs; 12 mm for flat bars with a curved underside; 15 mm for a cone on its side; in
    * single precision 1 mm more. For greater depths 2 % of the smaller object's radius at a depth of 3 %
    * of it, 6 % at 10 %, 20 % at 30 %. In a motion of 0.01 degrees pos of leaning discs jumps by at most
@@ -401,7 +405,8 @@ typedef struct ccd_contact_t {
    */
   ccd_real_t depth;
   /**
-   * Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache.
+   * Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache. When a
+   * contact vanishes, a new one within a quarter of the overlap's extent takes its id.
    */
   unsigned int id;
 } ccd_contact_t;

@@ -221,18 +221,23 @@ impl OutlineRay {
     }
 
     /// Returns the outline point between this ray and `next` at which the bounds `i` and `j`, active on the one and on
-    /// the other, are equal; and the excess of the third bound there.
+    /// the other, are equal; the excess of the third bound there; and the part of the way to `next`, at least `from`.
     #[inline(always)]
-    fn outline_crossing(&self, next: &Self, i: usize, j: usize) -> (Vec3, f64) {
+    fn outline_crossing(&self, next: &Self, i: usize, j: usize, from: f64) -> (Vec3, f64, f64) {
         let k = 3_usize.wrapping_sub(i + j).min(2);
         let [i, j] = [i, j].map(|i| i.min(2));
         let (a, b) = (&self.bounds, &next.bounds);
         let t = (a[i] - a[j]) / ((a[i] - a[j]) - (b[i] - b[j]));
-        // Between the rays whatever the rounding: the center is then a mean of points of both outlines.
-        let t = lesser(larger(t, 0.0), 1.0);
+        // Between the rays whatever the rounding: the center is then a mean of points of both outlines. Bounds that are equal
+        // all the way, within rounding, cross anywhere.
+        let t = lesser(larger(t, from), 1.0);
         let bounds = [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t);
         let at = self.at + (next.at - self.at) * t;
-        (outline_at(at, bounds[i], bounds[2]), bounds[k] - bounds[i])
+        (
+            outline_at(at, bounds[i], bounds[2]),
+            bounds[k] - bounds[i],
+            t,
+        )
     }
 }
 
@@ -333,12 +338,12 @@ impl PressureSum {
         let mut start = last.end;
         if i != j {
             let k = 3_usize.wrapping_sub(i + j).min(2);
-            let (mut middle, excess) = last.outline_crossing(next, i, j);
+            let (mut middle, excess, _) = last.outline_crossing(next, i, j, 0.0);
             if excess > 0.0 {
-                let (first, _) = last.outline_crossing(next, i, k);
+                let (first, _, from) = last.outline_crossing(next, i, k, 0.0);
                 self.add(&start, &first);
                 start = first;
-                (middle, _) = last.outline_crossing(next, k, j);
+                (middle, _, _) = last.outline_crossing(next, k, j, from);
             }
             self.add(&start, &middle);
             start = middle;
@@ -415,6 +420,34 @@ mod tests {
             let ([x, y], [u, v]) = (sum.center().into(), center_by_grid(&outlines));
             assert!((x - u).hypot(y - v) < 3e-3, "{round}: {x} {y} {u} {v}");
         }
+    }
+
+    /// Tests an edge that lies across a slender face, whose bounds on the drop and on w are equal, within rounding, all the way
+    /// between two rays: the center is on the edge.
+    #[test]
+    fn bounds_that_are_equal_all_the_way_cross_in_the_overlap() {
+        let edge = outline(&[
+            (0.051156761441547835, 0.06929711286863215, 0.0),
+            (-0.10185937621243471, -0.13797900507875485, 0.0),
+            (-0.11309091209911801, -0.1576502898022648, 1.0),
+        ]);
+        let face = outline(&[
+            (
+                -0.05560451311603841,
+                0.1477806601813245,
+                8.417640656259147e-7,
+            ),
+            (-0.0907078790524085, 0.17434792664456794, 0.5184544119205408),
+            (-0.09785047221744633, 0.17822548222618612, 1.0),
+            (0.13024501704762834, -0.3855998777456977, 1.0),
+            (0.18854988924517846, -0.5011104574177705, 0.0),
+            (0.1980463456798991, -0.5059758252809023, 1.0),
+        ]);
+        let mut sum = PressureSum::new(1e-3, 1.8e-6);
+        sum.add_both(&edge, &face);
+        let center = sum.center();
+        let along = Vec2::new(0.153016, 0.207276).normalize();
+        assert!(along.perp(&center).abs() < 1e-3, "{center:?}");
     }
 
     /// Returns the center of pressure of a body on a floor, at this depth, with the vertices that `dirs` return as

@@ -152,11 +152,14 @@ impl Outline {
         };
         // Insertion sort.
         for end in 1..self.len.min(MAX_VERTICES) {
-            for i in (1..=end).rev() {
-                if !is_before(&self.vertices[i], &self.vertices[i - 1]) {
+            let mut i = end;
+            while i > 0 && i <= MAX_VERTICES {
+                let (earlier, later) = (self.vertices[i - 1], self.vertices[i]);
+                if !is_before(&later, &earlier) {
                     break;
                 }
-                self.vertices.swap(i, i - 1);
+                (self.vertices[i - 1], self.vertices[i]) = (later, earlier);
+                i -= 1;
             }
         }
         self.repeat_first();

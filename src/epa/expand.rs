@@ -77,30 +77,42 @@ impl EpaLimits {
     }
 }
 
+/// What an expansion works on besides its buffers, which have three sizes.
+pub struct Expansion<'e, 'm, A, B> {
+    pub query: &'e mut SupportQuery<'m, A, B>,
+    pub fit: &'e mut SphereFit,
+    /// The interior point of the query.
+    pub interior: &'e Vec3,
+    pub limits: &'e EpaLimits,
+    /// The number of support points that expanded polytopes of the query, which continues.
+    pub iterations: &'e mut u64,
+}
+
 /// Expands the polytope until the bounds meet, by the steps at the head of this file. Returns why it ended; `None` if a
-/// buffer is full. `iterations`: the count of the query, which continues. `has_larger`: true if the caller continues in
-/// larger buffers when these are full.
+/// buffer is full. `has_larger`: true if the caller continues in larger buffers then.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 #[inline(always)]
-#[allow(clippy::too_many_arguments, reason = "the buffers have three sizes")]
 pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+    expansion: Expansion<'_, '_, A, B>,
     set: &mut VertexSet<N>,
-    fit: &mut SphereFit,
-    interior: &Vec3,
     polytope: &mut EpaPolytope<F>,
-    iterations: &mut u64,
-    limits: &EpaLimits,
     has_larger: bool,
 ) -> Result<Option<Status>, Stop> {
     trace::stage("expansion");
+    let Expansion {
+        query,
+        fit,
+        interior,
+        limits,
+        iterations,
+    } = expansion;
     // The key of the closest face when a fit's direction found nothing above it.
     let mut last_failed_key = -1.0;
     // The normal of the face above which the last point was inserted.
     let mut last_normal = Vec3::zeros();
-    // Terminates: each turn adds a vertex to the set or a corner, or corrects a key.
+    // Terminates: each turn adds a vertex to the set or a corner.
     loop {
         let closest = polytope.closest_face();
         polytope.set_size(query.scale.size());
@@ -116,9 +128,6 @@ pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
         let is_inside = closest.key >= 0.0;
         trace::lower_bound(larger(closest.key, 0.0).sqrt());
         if is_inside && closest.key >= target_key {
-            if polytope.refresh_keys(target_key) {
-                continue;
-            }
             return Ok(Some(Status::Converged));
         }
         // While the origin is outside, the buffers are the only limit: the caller's limits must not
@@ -235,16 +244,14 @@ mod tests {
         let mut polytope = EpaPolytope::<64>::blank(query.scale.size());
         assert!(polytope.start(&start, query.scale.size(), false));
         let mut iterations = 0;
-        let end = expand(
-            &mut query,
-            &mut set,
-            &mut SphereFit::default(),
-            &at,
-            &mut polytope,
-            &mut iterations,
+        let expansion = Expansion {
+            query: &mut query,
+            fit: &mut SphereFit::default(),
+            interior: &at,
             limits,
-            false,
-        )?;
+            iterations: &mut iterations,
+        };
+        let end = expand(expansion, &mut set, &mut polytope, false)?;
         let lower = polytope.lower_bound(&polytope.closest_face());
         Ok((end, query.upper.depth, lower, iterations))
     }

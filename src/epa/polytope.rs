@@ -48,7 +48,7 @@
 //! # Layout
 //!
 //! A struct of arrays: one sweep over the keys finds the closest face, without a heap. A half-edge has the index
-//! 4 · face + edge; edge i leads from corner i to corner i + 1, counterclockwise seen from outside. Free faces have
+//! 4 · face + edge ([`half_edge`]); edge i leads from corner i to corner i + 1, counterclockwise seen from outside. Free faces have
 //! the key +∞ and form a linked list.
 
 use crate::geometry::plane::{MIN_EXTENT_ULPS, PLANE_ERROR_ULPS, Plane, Tetrahedron};
@@ -57,6 +57,10 @@ use crate::minkowski::vertex_set::{PAIR_BITS, Vertex, VertexPair, VertexSet};
 
 /// The mark of the bottom of the stack of half-edges in [`EpaPolytope::walk_visible`].
 const STACK_BOTTOM: u16 = u16::MAX;
+/// The edges of a face of a fan: on the horizon, from its end to the new point, and from there to its start.
+const HORIZON: usize = 0;
+const TO_APEX: usize = 1;
+const FROM_APEX: usize = 2;
 /// The steps to the next and the previous half-edge of a face, for each edge.
 const NEXT: [i8; 4] = [1, 1, -2, 0];
 const PREVIOUS: [i8; 4] = [2, -1, -1, 0];
@@ -72,6 +76,24 @@ const MIN_N2: f64 = 0.01;
 /// The error that an insertion adds, in ulps of the size. Derived: two products and their sum round to 2 ulps of the
 /// size, which is ten times as much for the least |N|.
 const INSERTION_ERROR_ULPS: f64 = 20.0;
+
+/// Returns the half-edge at this edge of a face.
+#[inline(always)]
+const fn half_edge(face: usize, edge: usize) -> usize {
+    4 * face + edge
+}
+
+/// Returns the face of a half-edge.
+#[inline(always)]
+const fn face_of(half_edge: usize) -> usize {
+    half_edge >> 2
+}
+
+/// Returns the edge of its face at which a half-edge is.
+#[inline(always)]
+const fn edge_of(half_edge: usize) -> usize {
+    half_edge & 3
+}
 
 /// A polytope with room for `F` faces.
 #[repr(C)]
@@ -102,7 +124,7 @@ pub struct EpaPolytope<const F: usize> {
     error: f64,
     /// The |N|² below which planes are computed from their corners.
     min_n2: f64,
-    /// [`KEY_ERROR_REL`], or 0 if keys are recomputed exactly ([`EpaPolytope::refresh_keys`]).
+    /// [`KEY_ERROR_REL`], or 0 if planes are exact: the tolerance is finer than the error of keys.
     key_error: f64,
 }
 
@@ -192,7 +214,7 @@ impl<const F: usize> EpaPolytope<F> {
 
     #[inline(always)]
     fn step(h: usize, by: &[i8; 4]) -> usize {
-        h.wrapping_add_signed(isize::from(by[h & 3]))
+        h.wrapping_add_signed(isize::from(by[edge_of(h)]))
     }
 
     /// Returns the corners of a face.
@@ -249,19 +271,10 @@ impl<const F: usize> EpaPolytope<F> {
     }
 
     /// Returns whether there is room for more than `count` corners: a closed surface of C corners has 2 C − 4 faces, and an
-    /// insertion makes a few new faces before it frees the old ones.
+    /// insertion makes a few new faces before it frees the old ones. Corners that have become hidden count too.
     #[inline(always)]
     pub fn has_room(&self, count: usize) -> bool {
-        // Corners that have become hidden count here.
-        self.num_corners + count < F / 2 || self.has_room_left(count)
-    }
-
-    /// Continues [`EpaPolytope::has_room`] without the hidden corners, which bound the number of insertions.
-    #[cold]
-    #[inline(never)]
-    fn has_room_left(&self, count: usize) -> bool {
-        let corners = self.faces().count() / 2 + 2;
-        corners + count < F / 2 && self.num_corners < 2 * F
+        self.num_corners + count < F / 2
     }
 
     #[inline(always)]
@@ -381,27 +394,6 @@ impl<const F: usize> EpaPolytope<F> {
         }
     }
 
-    /// Recomputes the keys if planes are exact, since the tolerance is then finer than the error of keys. Returns
-    /// whether a face is closer than `key`; its key is lowered accordingly.
-    #[inline(always)]
-    pub fn refresh_keys(&mut self, key: f64) -> bool {
-        !(self.key_error > 0.0) && self.recompute_keys(key)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn recompute_keys(&mut self, key: f64) -> bool {
-        let mut is_closer = false;
-        for f in 0..self.used.min(F) {
-            let (square, _) = self.plane(f).signed_square();
-            if self.keys[f] < f64::INFINITY && square < key {
-                self.keys[f] = Self::key(f, square * (1.0 - KEY_ERROR_REL));
-                is_closer = true;
-            }
-        }
-        is_closer
-    }
-
     /// Inserts the corner `new`. `first`: a face that it is above by more than `level`, metres. `corner` returns the point
     /// of a corner. Returns `false` if there is no room for the new faces; the polytope is then unchanged. `has_larger`:
     /// true if the caller continues in larger buffers then.
@@ -448,19 +440,20 @@ impl<const F: usize> EpaPolytope<F> {
         let point = Plane::point(&new.w);
         let mut tail = first;
         self.keys[Self::in_range(first)] = f64::INFINITY;
-        let mut edge = 4 * first;
+        let mut edge = half_edge(first, 0);
         // The top of the stack of half-edges from which the walk continues; its face stores the one below.
-        let mut top = edge + 1;
-        *self.below_mut(first) = edge as u16 + 2;
+        let mut top = half_edge(first, 1);
+        *self.below_mut(first) = half_edge(first, 2) as u16;
         let mut free = self.free;
-        let begin = 4 * free;
+        // The horizon edges of the fan's first face and of its last one.
+        let begin = half_edge(free, HORIZON);
         let mut previous = begin;
         let mut met_again = false;
         loop {
             let twin = self.twin(edge);
-            let neighbour = self.plane(twin >> 2);
+            let neighbour = self.plane(face_of(twin));
             if neighbour.height(&point) > level {
-                let face = Self::in_range(twin >> 2);
+                let face = Self::in_range(face_of(twin));
                 if self.keys[face] != f64::INFINITY {
                     self.keys[face] = f64::INFINITY;
                     self.set_next(tail, face);
@@ -477,27 +470,29 @@ impl<const F: usize> EpaPolytope<F> {
                     return Insertion::NoRoom;
                 }
                 self.add_face(free, [edge, twin], [neighbour, point], new.pair, corner);
-                let (f, fan) = (Self::in_range(free), 4 * free);
-                self.twins[f][2] = (previous | 1) as u16;
-                self.set_twin(twin, fan);
-                self.set_twin(previous | 1, fan | 2);
-                previous = fan;
+                let (f, on_horizon) = (Self::in_range(free), half_edge(free, HORIZON));
+                self.twins[f][FROM_APEX] = (previous | TO_APEX) as u16;
+                self.set_twin(twin, on_horizon);
+                self.set_twin(previous | TO_APEX, on_horizon | FROM_APEX);
+                previous = on_horizon;
                 free = self.next_free(free);
             }
             if top == usize::from(STACK_BOTTOM) {
                 break;
             }
             edge = top;
-            let below = self.below_mut(edge >> 2);
+            let below = self.below_mut(face_of(edge));
             top = usize::from(core::mem::replace(below, STACK_BOTTOM));
         }
         // The first case: no face was hidden.
-        if begin == 4 * free || met_again && !self.is_horizon_closed(begin, previous) {
+        if begin == half_edge(free, HORIZON)
+            || met_again && !self.is_horizon_closed(begin, previous)
+        {
             self.revert(first, tail, free);
             return Insertion::HorizonNotSimple;
         }
-        self.set_twin(begin | 2, previous | 1);
-        self.set_twin(previous | 1, begin | 2);
+        self.set_twin(begin | FROM_APEX, previous | TO_APEX);
+        self.set_twin(previous | TO_APEX, begin | FROM_APEX);
         self.used = self.used.max(free.min(F));
         self.num_corners += 1;
         // The visible faces become free.
@@ -520,13 +515,13 @@ impl<const F: usize> EpaPolytope<F> {
         new: VertexPair,
         corner: &impl Fn(VertexPair) -> Vec3,
     ) {
-        let visible = self.plane(edge >> 2);
+        let visible = self.plane(face_of(edge));
         let above = visible.height(&point);
         let below = lesser(hidden.height(&point), 0.0);
         let plane = visible.towards(&hidden, above / (above - below));
         // The corners of the visible face, rotated so that the edge leads from the first to the second.
-        let corners = self.corners[Self::in_range(edge >> 2)];
-        let turn = PAIR_BITS * (edge & 3) as u32;
+        let corners = self.corners[Self::in_range(face_of(edge))];
+        let turn = PAIR_BITS * edge_of(edge) as u32;
         let rotated = corners >> turn | corners << (3 * PAIR_BITS - turn);
         let ends = rotated & ((1 << (2 * PAIR_BITS)) - 1);
         let f = Self::in_range(f);
@@ -534,10 +529,10 @@ impl<const F: usize> EpaPolytope<F> {
         self.planes[f] = plane.array();
         let (mut square, n2) = plane.signed_square();
         if !(n2 >= self.min_n2) {
-            square = self.recompute_plane(f, edge >> 2, corner);
+            square = self.recompute_plane(f, face_of(edge), corner);
         }
         self.keys[f] = Self::key(f, square);
-        self.twins[f][0] = twin as u16;
+        self.twins[f][HORIZON] = twin as u16;
         *self.replaced_mut(f) = edge as u16;
     }
 
@@ -547,7 +542,7 @@ impl<const F: usize> EpaPolytope<F> {
     #[inline(never)]
     fn is_horizon_closed(&self, begin: usize, last: usize) -> bool {
         let ends = |h: usize| {
-            let [from, to, _] = self.corners(h >> 2);
+            let [from, to, _] = self.corners(face_of(h));
             (from, to)
         };
         let mut current = begin;
@@ -556,7 +551,7 @@ impl<const F: usize> EpaPolytope<F> {
             if current == last {
                 break;
             }
-            let next = self.twin(current | 1) & !3;
+            let next = half_edge(face_of(self.twin(current | TO_APEX)), HORIZON);
             if ends(current).1 != ends(next).0 {
                 return false;
             }
@@ -573,7 +568,7 @@ impl<const F: usize> EpaPolytope<F> {
         let mut f = self.free;
         while f != free && f < F {
             let replaced = usize::from(*self.replaced_mut(f));
-            self.set_twin(self.twin(4 * f), replaced);
+            self.set_twin(self.twin(half_edge(f, HORIZON)), replaced);
             self.keys[f] = f64::INFINITY;
             f = self.next_free(f);
         }
@@ -703,12 +698,12 @@ mod tests {
             assert!(plane.normal().dot(&hull.interior) < plane.offset());
             assert!(hull.keys[f] < f64::INFINITY);
             for e in 0..3 {
-                let twin = hull.twin(4 * f + e);
-                assert_eq!(hull.twin(twin), 4 * f + e);
-                assert!(hull.keys[twin >> 2] < f64::INFINITY);
-                let (mine, other) = (hull.corners(f), hull.corners(twin >> 2));
-                assert_eq!(mine[e], other[((twin & 3) + 1) % 3]);
-                assert_eq!(mine[(e + 1) % 3], other[twin & 3]);
+                let twin = hull.twin(half_edge(f, e));
+                assert_eq!(hull.twin(twin), half_edge(f, e));
+                assert!(hull.keys[face_of(twin)] < f64::INFINITY);
+                let (mine, other) = (hull.corners(f), hull.corners(face_of(twin)));
+                assert_eq!(mine[e], other[(edge_of(twin) + 1) % 3]);
+                assert_eq!(mine[(e + 1) % 3], other[edge_of(twin)]);
                 edges += 1;
             }
         }

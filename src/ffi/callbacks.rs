@@ -6,7 +6,7 @@
 use core::ffi::{c_uint, c_void};
 
 use super::types::{ccd_center_fn, ccd_support_fn, ccd_t, ccd_vec3_t};
-use super::warm::penetration::{CCD_WANT_ALL, CCD_WANT_POINTS, CCD_WANT_POS};
+use super::warm::want::{CCD_WANT_ALL, CCD_WANT_POINTS, CCD_WANT_POS};
 use crate::math::{Vec3, from_real};
 use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
 use crate::query::{Pair, Solver};

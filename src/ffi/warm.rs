@@ -9,6 +9,7 @@
 //!
 //!   codes        returned by every call that fills a struct
 //!   states       ccd_warm_t, ccdWarmGuess, ccdWarmFlip
+//!   flags        CCD_WANT_: outputs that are computed only if they are requested
 //!   penetration  ccdPenetration: overlap, depth, direction, contact position
 //!   overlap      ccdIntersect
 //!   distance     ccdSignedDistance
@@ -54,10 +55,11 @@ pub mod libccd;
 pub mod penetration;
 pub mod special;
 pub mod state;
+pub mod want;
 
 pub use {
     check::*, codes::*, contacts::*, distance::*, identity::*, intersect::*, libccd::*,
-    penetration::*, special::*, state::*,
+    penetration::*, special::*, state::*, want::*,
 };
 
 /// Returns the caller's direction; zero, which is no direction, where `dir` is NULL.

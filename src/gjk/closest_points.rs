@@ -19,7 +19,7 @@
 //! Outputs, valid for every [`Status`]: `lower` is a bound along `normal`; `upper` is the distance
 //! of the two points. `is_inside`: the origin is in the simplex, and the points coincide.
 
-use crate::gjk::intersect::{CAPACITY, Enclosing};
+use crate::gjk::intersect::{CAPACITY, OverlapProof};
 use crate::gjk::simplex::Simplex;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
@@ -132,7 +132,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let point = |corner: Vertex| self.set.point(corner.pair);
         if self.is_inside {
             let corners = self.simplex.tetrahedron().map(point);
-            return Enclosing { corners }.witnesses();
+            return OverlapProof::Simplex(corners).witnesses();
         }
         let corners = self.simplex.corners().map(point);
         support::witnesses(&self.simplex.weights(), corners.each_ref())

@@ -21,8 +21,8 @@
 //! each face between the portal and that point ([`has_points_around`]).
 //!
 //! Outputs: `Err(Stop::Separated(n))`: n is a separating axis, or the support value of n is at most the contact
-//! epsilon. `Ok`: D contains the origin, or (undecided) the origin is within rounding of the surface of a simplex
-//! and no evaluated direction separates. Measured (`touches` of c-tests/tests/contract): of 2 million touches 5 are
+//! epsilon. `Ok`: D contains the origin, or ([`OverlapProof::Undecided`]) the origin is within rounding of the surface of a
+//! simplex and no evaluated direction separates. Measured (`touches` of c-tests/tests/contract): of 2 million touches 5 are
 //! undecided, objects that were turned and whose D has the origin on an edge.
 
 use crate::geometry::barycentric;
@@ -47,33 +47,49 @@ const MIN_END_FRACTION: f64 = 0.25;
 /// million touches of turned hulls count as hits.
 const GENERIC_FRACTION: f64 = 0.44;
 
-/// Points of D whose hull contains the origin, within rounding.
+/// What proves that D contains the origin: four points of D whose hull contains it within rounding, the last one repeated if
+/// there are fewer.
 #[derive(Clone, Copy, Debug)]
-pub struct Enclosing {
-    /// The corners, the last one repeated if there are fewer than four.
-    pub corners: [SupportPoint; 4],
+pub enum OverlapProof {
+    /// The origin is in this simplex.
+    Simplex([SupportPoint; 4]),
+    /// D lies in a plane, and the origin is in this triangle or on this segment.
+    Planar([SupportPoint; 4]),
+    /// The origin is between this point of D, the first one, and a portal.
+    Portal([SupportPoint; 4]),
+    /// Nothing: the origin is on the surface of this simplex within rounding, and no evaluated direction separates.
+    Undecided([SupportPoint; 4]),
 }
 
-impl Enclosing {
-    /// Makes the simplex of four corners, which are known differences or the center.
-    fn new<const N: usize>(
-        set: &VertexSet<N>,
-        corners: &[Vertex; 4],
-        center: Option<&SupportPoint>,
-    ) -> Self {
-        let corners = corners.each_ref().map(|corner| match center {
-            Some(point) if corner.pair.is_interior() => *point,
-            _ => set.point(corner.pair),
-        });
-        Self { corners }
+impl OverlapProof {
+    /// Returns the points.
+    pub fn corners(&self) -> &[SupportPoint; 4] {
+        match self {
+            Self::Simplex(corners)
+            | Self::Planar(corners)
+            | Self::Portal(corners)
+            | Self::Undecided(corners) => corners,
+        }
     }
 
     /// Returns a point of obj1 and a point of obj2 that coincide within rounding.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
-        let corners = self.corners.each_ref();
+        let corners = self.corners().each_ref();
         let origin = barycentric::tetrahedron(&Vec3::zeros(), corners.map(|p| &p.v));
         support::witnesses(&origin.weights, corners)
     }
+}
+
+/// Returns the points of the corners of a simplex, which are known differences or the center.
+fn points_of<const N: usize>(
+    set: &VertexSet<N>,
+    corners: &[Vertex; 4],
+    center: Option<&SupportPoint>,
+) -> [SupportPoint; 4] {
+    corners.each_ref().map(|corner| match center {
+        Some(point) if corner.pair.is_interior() => *point,
+        _ => set.point(corner.pair),
+    })
 }
 
 /// Tests whether the objects intersect. Starts along `first`. `center`: the difference of trusted centers.
@@ -134,7 +150,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     center: Option<&SupportPoint>,
     dir: &Vec3,
     is_planar: bool,
-) -> Result<Enclosing, Stop> {
+) -> Result<OverlapProof, Stop> {
     trace::stage("GJK");
     let center = center.filter(|_| query.center.is_some());
     const { assert!(N >= CAPACITY) };
@@ -163,14 +179,15 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
             }
             let corners = simplex.tetrahedron();
             if simplex.is_certain() {
-                return Ok(Enclosing::new(set, &corners, center));
+                return Ok(OverlapProof::Simplex(points_of(set, &corners, center)));
             }
             return resolve_by_portal(query, set, corners, center, &dir);
         };
         // In a plane, a triangle that has the origin inside is a proof. Its normal is that of the plane: no direction.
         if is_planar && (simplex.len() == 3 || distance2 <= eps2) {
             let [a, b, c] = simplex.corners();
-            return Ok(Enclosing::new(set, &[a, b, c, c], center));
+            let points = points_of(set, &[a, b, c, c], center);
+            return Ok(OverlapProof::Planar(points));
         }
         // Negated for NaN.
         if !(distance2 > eps2 && distance2 < closest2) {
@@ -185,7 +202,8 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     }
     let [a, b, c] = simplex.corners();
     if is_planar {
-        return Ok(Enclosing::new(set, &[a, b, c, c], center));
+        let points = points_of(set, &[a, b, c, c], center);
+        return Ok(OverlapProof::Undecided(points));
     }
     resolve_by_portal(query, set, [a, b, c, c], center, &dir)
 }
@@ -316,7 +334,7 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
 
 /// Resolves the case of an origin on the surface of a simplex within rounding, by a portal from a point
 /// between the simplex and the opposite side of D: that point is well inside D however flat the simplex is.
-/// Returns the corners of the simplex if no portal is found; no evaluated direction separates then, and D is not flat.
+/// [`OverlapProof::Undecided`], with the simplex, if no portal is found: D is not flat then.
 #[cold]
 #[inline(never)]
 fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
@@ -325,21 +343,19 @@ fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
     mut corners: [Vertex; 4],
     center: Option<&SupportPoint>,
     dir: &Vec3,
-) -> Result<Enclosing, Stop> {
+) -> Result<OverlapProof, Stop> {
     set.compact(&mut corners);
-    let simplex = Enclosing::new(set, &corners, center);
-    let [a, b, c, d] = &simplex.corners;
+    let simplex = points_of(set, &corners, center);
+    let [a, b, c, d] = &simplex;
     let t = GENERIC_FRACTION;
     let middle = a.towards(b, t).towards(&c.towards(d, t), t);
     let inner = find_interior(query, set, &middle, &-dir)?;
     let Some(portal) = find_enclosing_portal(query, set, &inner.v, false)? else {
         evaluate_normals_of_flat(query, set, &inner.v)?;
-        return Ok(simplex);
+        return Ok(OverlapProof::Undecided(simplex));
     };
     let [a, b, c] = portal.corners.map(|corner| set.point(corner.pair));
-    Ok(Enclosing {
-        corners: [inner, a, b, c],
-    })
+    Ok(OverlapProof::Portal([inner, a, b, c]))
 }
 
 /// Evaluates directions of which one separates if D is flat: one perpendicular to `inner`, a point of D, and both
@@ -392,8 +408,7 @@ mod tests {
             set.push(&n, &point);
             let corners = [set.farthest_vertex(&n); 4];
             let resolved = resolve_by_portal(&mut query, &mut set, corners, None, &n).unwrap();
-            // Without a portal the corners are those of the start: all equal.
-            if resolved.corners[1] != resolved.corners[2] {
+            if let OverlapProof::Portal(_) = resolved {
                 found += 1;
                 let (p, q) = resolved.witnesses();
                 assert!((p - q).norm() <= 64.0 * EPSILON);

@@ -3,7 +3,7 @@
 
 //! A face of the inner model, with its foot: the projection of the origin on its plane ([`crate::local`]).
 
-use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular};
+use crate::math::{Vec3, lesser, normalise_unscaled};
 use crate::minkowski::vertex_set::Vertex;
 
 /// A face of the inner model: the last portal of a ray.
@@ -46,26 +46,9 @@ impl Face {
     /// Returns the distance of the foot from the line of edge `i`, positive inside, times the length of the edge;
     /// and the square of that length.
     fn side(&self, i: usize) -> (f64, f64) {
-        let edge = self.edge(i);
+        let edge = self.corners[(i + 1) % 3].w - self.corners[i].w;
         // The foot is on the normal.
         let side = -self.normal.dot(&edge.cross(&self.corners[i].w));
         (side, edge.norm_squared())
-    }
-
-    fn edge(&self, i: usize) -> Vec3 {
-        self.corners[(i + 1) % 3].w - self.corners[i].w
-    }
-
-    /// Returns the unit vector in the face's plane perpendicular to its longest edge: the direction of descent if the
-    /// face is narrow and its foot is not the minimum.
-    pub fn perpendicular_to_longest_edge(&self) -> Vec3 {
-        let mut longest = self.edge(0);
-        for i in 1..3 {
-            if self.edge(i).norm_squared() > longest.norm_squared() {
-                longest = self.edge(i);
-            }
-        }
-        normalise_unscaled(&self.normal.cross(&longest))
-            .unwrap_or_else(|| perpendicular(&self.normal))
     }
 }

@@ -28,8 +28,8 @@ pub const MAX_FAILURES: u32 = 5;
 
 // Minima of the local search.
 
-/// The tilt of the directions that confirm a minimum, radians: no support value at this angle may be lower. A face
-/// that is narrower, as seen from the origin, needs such a confirmation.
+/// The tilt of the directions that confirm the minimum of a model, radians: no support value at this angle may be lower. Also
+/// the angle, as seen from the origin, below which a face is narrow.
 pub const CONFIRM_TILT_RAD: f64 = 0.015;
 /// The least and the largest angle of a known direction that confirms a minimum in place of a tilted one, radians. Measured:
 /// with 0.4 and 2.5 tilts in place of 0.25 and 4, local searches take 0.3 % more support points. Up to the least, the normal of

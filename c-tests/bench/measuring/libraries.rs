@@ -16,7 +16,7 @@ use libloading::os::unix::{Library, RTLD_LAZY, RTLD_LOCAL};
 use warmccd_bindings::libccd::{Libccd, ccd_t, ccd_vec3_t};
 use warmccd_bindings::warmccd::{CCD_WARM_REALS, Warmccd, ccd_warm_t};
 
-use super::scene::Pair;
+use super::pair::Pair;
 use crate::harness;
 
 /// glibc's flag; libloading does not name it.

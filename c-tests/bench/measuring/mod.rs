@@ -12,5 +12,6 @@ pub mod ledger;
 pub mod libraries;
 pub mod measure;
 pub mod methods;
+pub mod pair;
 pub mod recorded;
 pub mod scene;

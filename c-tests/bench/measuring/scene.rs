@@ -4,38 +4,14 @@
 //! Pairs of shapes in many poses, each with the global minimum of its penetration depth: pair sets of
 //! `c-tests/bench/pairs` and the recorded contacts of `c-tests/tools/record`.
 
-use std::ffi::{CString, c_void};
+use std::ffi::CString;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::ptr::null_mut;
 
 use super::libraries::Libraries;
+pub use super::pair::{Pair, Truth};
 use crate::harness;
-
-/// `pair_truth_t` of `c-tests/harness/pairs.h`.
-#[repr(C)]
-#[derive(Clone, Copy, Default, Debug)]
-pub struct Truth {
-    pub depth: f64,
-    pub gap: f64,
-    pub normal: [f64; 3],
-    pub init5: [f64; 3],
-    pub init25: [f64; 3],
-    pub init45: [f64; 3],
-    pub cold: [f64; 3],
-}
-
-/// `bench_pose_t` of `callbacks.c`: two placed shapes of the callbacks.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct Pair {
-    pub a: *mut c_void,
-    pub b: *mut c_void,
-    pub truth: Truth,
-    pub motion: usize,
-    /// Position in its motion; 0 starts a new one.
-    pub frame: usize,
-}
 
 /// Kinds and depths of random pairs, in the order of `bench_random` in `callbacks.c`.
 pub const KINDS: [&str; 8] = [

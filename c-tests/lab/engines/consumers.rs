@@ -3,7 +3,7 @@
 
 //! Builds the programs that run before a release alone: other consumers of libccd, and FCL collided by `<ccd/fcl.hpp>`.
 
-use super::programs::{Method, fcl_preload, on_both, program};
+use super::programs::{Method, on_both, preload_library, program};
 use crate::harness::{self, Executable, Link, Precision, must_succeed, output_dir, root};
 use std::process::Command;
 
@@ -60,6 +60,10 @@ pub fn python_wheel() -> Result<[Method; 3], String> {
     let ours = Method::ours("this library", python).first(&script);
     // Its name is the one that `libwarmccd-fcl.so` asks for.
     let library = harness::library(Precision::Double).dir.join("libccd.so.2");
-    let signed = ours.clone().named("this library and `libwarmccd-fcl.so`").preload(fcl_preload()).first("signed");
+    let signed = ours
+        .clone()
+        .named("this library and `libwarmccd-fcl.so`")
+        .preload(preload_library("libwarmccd-fcl.so"))
+        .first("signed");
     Ok([theirs, ours.preload(library.clone()), signed.preload(library)])
 }

@@ -4,7 +4,7 @@
 //! FCL and python-fcl's wheel on libccd and on this library, and what `<ccd/fcl.hpp>` costs. (Whole simulations are judged
 //! where their table is made: `cargo run --release -p lab --bin engines -- long`.)
 
-use crate::engines::programs::{fcl_distance, run_all};
+use crate::engines::programs::{fcl_distance, on_both, preload_library, program, run_all};
 use crate::engines::{consumers, tables};
 use crate::measuring::callgrind;
 
@@ -26,6 +26,19 @@ fn fcl_signed_distance() {
             assert!(ours.value(&key) <= theirs.value(&key), "{key}\n{}", ours.text);
         }
     }
+}
+
+/// MuJoCo's issue 420: no cylinder slides on this library, most do on libccd. `libwarmccd-middle.so`, whose `pos` is the middle
+/// of the witness points, lets all of them slide: it is for programs that use no position.
+#[test]
+fn mujoco_cylinders_stay_by_the_center_of_pressure() {
+    let [theirs, ours] = on_both(program("mujoco_slide.c"));
+    let middle = ours.clone().named("the middle for pos").preload(preload_library("libwarmccd-middle.so"));
+    let [theirs, ours, middle] = run_all(&[theirs, ours, middle], "40").map(|output| output.value("slide.slid"));
+    assert!(
+        ours == 0.0 && theirs > 30.0 && middle == 40.0,
+        "slid: {ours}, on libccd {theirs}, with the middle {middle}"
+    );
 }
 
 /// A preloaded library takes the place of the shared libccd that python-fcl's wheel carries. The depth is 0.1 m. With

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The warmccd developers
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Prints the libccd in the process of python-fcl's wheel, its own or a preloaded one, and its depth of two upright
-cylinders, which have 0.1 m of their heights in common and 0.5 m of their radii. Then, if asked, the number of 3,000
+"""Prints the libccd in the process of python-fcl's wheel, its own or a preloaded one; its depth of two upright
+cylinders, which have 0.1 m of their heights in common and 0.5 m of their radii; how far the contact position of a cube that
+stands on another is from the cube's middle; and how many random cylinders and boxes overlap. Then, if asked, the number of 3,000
 signed distances of equal boxes that nearly touch which are off by more than 1e-6 of the size; without
 libwarmccd-fcl.so one of them ends the process, or does not end.
 
@@ -14,6 +15,7 @@ import random
 import sys
 
 import fcl
+import numpy as np
 
 try:
     implementation = ctypes.CDLL(None).ccdImplementation
@@ -21,11 +23,29 @@ try:
     print("library", implementation().decode())
 except AttributeError:
     print("library libccd")
-first = fcl.CollisionObject(fcl.Cylinder(0.5, 0.1), fcl.Transform())
-second = fcl.CollisionObject(fcl.Cylinder(0.3, 0.2), fcl.Transform([0.3, 0, 0.05]))
-result = fcl.CollisionResult()
-fcl.collide(first, second, fcl.CollisionRequest(num_max_contacts=1, enable_contact=True), result)
-print("wheel depth %.6f" % result.contacts[0].penetration_depth)
+
+
+def contact(first, second, *pose):
+    """Returns the contact of two shapes, the second one placed; None if they are apart."""
+    result = fcl.CollisionResult()
+    pair = fcl.CollisionObject(first, fcl.Transform()), fcl.CollisionObject(second, fcl.Transform(*pose))
+    fcl.collide(*pair, fcl.CollisionRequest(num_max_contacts=1, enable_contact=True), result)
+    return result.contacts[0] if result.contacts else None
+
+
+print("wheel depth %.6f" % contact(fcl.Cylinder(0.5, 0.1), fcl.Cylinder(0.3, 0.2), [0.3, 0, 0.05]).penetration_depth)
+# Convex: FCL asks libccd about no pair of its boxes.
+faces = np.array([4, 0, 1, 3, 2, 4, 4, 6, 7, 5, 4, 0, 4, 5, 1, 4, 2, 3, 7, 6, 4, 0, 2, 6, 4, 4, 1, 5, 7, 3])
+cube = fcl.Convex(np.array([[x, y, z] for x in (-0.1, 0.1) for y in (-0.1, 0.1) for z in (-0.1, 0.1)]), 6, faces)
+print("wheel aside %.6f" % abs(contact(fcl.Box(1, 1, 1), cube, [0.3, 0, 0.599]).pos[0] - 0.3))
+
+random.seed(1)
+overlaps = 0
+for _ in range(2000):
+    turn = np.array([random.gauss(0, 1) for _ in range(4)])
+    at = [random.uniform(-0.6, 0.6) for _ in range(3)]
+    overlaps += contact(fcl.Cylinder(0.3, 0.4), fcl.Box(0.5, 0.4, 0.3), turn / np.linalg.norm(turn), at) is not None
+print("wheel overlaps", overlaps)
 
 
 def signed_distance(size, gap):

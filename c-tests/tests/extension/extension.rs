@@ -27,11 +27,13 @@ run_programs! {
     pos_is_the_center_of_pressure: program("tests/extension/pos.c").strict(), ["pressure", &one_in(8)];
     pos_is_near_both_objects: program("tests/extension/pos.c").strict(), ["near", "100"];
     pos_is_exact_on_rounded_bodies: program("tests/extension/pos.c").strict(), ["rounded", "400"];
+    pos_of_coincident_cubes_is_their_center: program("tests/extension/pos.c").strict(), ["coincident"];
     pos_does_not_jump: program("tests/extension/pos.c").strict(), ["jumps", &harness::rounds(10000)];
     pos_of_faces_is_within_the_limits: program("tests/extension/pos.c").strict(), ["faces", &harness::rounds(300)];
     pos_of_flat_bars_is_on_their_middle: program("tests/extension/pos_flat.c").strict(), ["lying", &harness::rounds(300)];
     pos_of_leaning_bodies_does_not_jump: program("tests/extension/pos_flat.c").strict(), ["leaning", &harness::rounds(1000)];
     pos_does_not_jump_where_its_axes_change: program("tests/extension/pos_flat.c").strict(), ["axes", &harness::rounds(1000)];
+    pos_in_the_middle: program("tests/extension/middle_pos.c").strict(), ["2000"];
     contacts_are_exact: program("tests/extension/contacts.c").strict(), [one_in(10)];
 }
 

@@ -15,7 +15,7 @@ const HEADERS: [(&str, &str, &str); 2] = [
     (
         "warm",
         "ccd/ccd.h",
-        "warm/codes warm/state warm/penetration warm/intersect warm/distance warm/contacts warm/special warm/libccd \
+        "warm/codes warm/state warm/want warm/penetration warm/intersect warm/distance warm/contacts warm/special warm/libccd \
          warm/check warm/identity",
     ),
     ("paper", "ccd/warm.h", "paper"),

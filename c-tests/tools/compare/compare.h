@@ -110,6 +110,11 @@ typedef struct {
     support_sample_t pending;
 } request_t;
 
+/* Returns a request that ends within MAX_CALLS calls of the callbacks: a hundred times
+ * what either library needs on degenerate shapes. */
+enum { MAX_CALLS = 100000 };
+request_t request_of(request_kind_t kind, const library_t *library, const query_t *q, samples_t *samples);
+
 /* Runs a request (request_t *). What the callbacks throw passes through. */
 void request_run(void *request);
 
@@ -139,11 +144,6 @@ typedef struct {
 /* Puts a query of the program's to libccd, to this library and to the proven minimum, judges the answers
  * and adds to the counts. own: what the program got; fields without an output pointer are NaN. */
 void judge_query(const compare_t *compare, const query_t *q, const answer_t *own);
-
-/* Returns a request that ends within MAX_CALLS calls of the callbacks: a hundred times
- * what either library needs on degenerate shapes. */
-enum { MAX_CALLS = 100000 };
-request_t request_of(request_kind_t kind, const library_t *library, const query_t *q, samples_t *samples);
 
 /* write_case.c: writes the answer of one library as a file if it is its worst of this kind and the file shows it
  * again. */

@@ -42,18 +42,6 @@ uint64_t clock_now(clockid_t id)
     return (uint64_t)t.tv_sec * 1000000000u + (uint64_t)t.tv_nsec;
 }
 
-request_t request_of(request_kind_t kind, const library_t *library, const query_t *q, samples_t *samples)
-{
-    request_t r;
-    memset(&r, 0, sizeof r);
-    r.kind = kind;
-    r.library = library;
-    r.q = q;
-    r.samples = samples;
-    r.tolerance = TRUTH_REL_TOL * query_tolerance(q);
-    return r;
-}
-
 /* Runs a request for the query's answer; returns how it ended. */
 static guard_t request_answer(const compare_t *compare, judged_t *s, int side, answer_t *answer)
 {
@@ -90,8 +78,7 @@ static request_t truth_request(request_kind_t kind, const compare_t *compare, co
 {
     request_t r = request_of(kind, &compare->library[COMPARE_OURS], s->q, samples);
     r.tilt = s->tilt;
-    if (s->tilt > 0)
-        r.tolerance = TILTED_TRUTH_REL_TOL * query_tolerance(s->q);
+    r.tolerance = (s->tilt > 0 ? TILTED_TRUTH_REL_TOL : TRUTH_REL_TOL) * query_tolerance(s->q);
     return r;
 }
 

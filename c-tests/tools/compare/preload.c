@@ -12,6 +12,7 @@
  *   CCD_COMPARE_DIR     folder of the counts
  *   CCD_COMPARE_THEIRS, CCD_COMPARE_OURS   private copies of the two libraries
  *   CCD_COMPARE_NAME    path of libccd, for the screen
+ *   CCD_COMPARE_LOADED  1: a libccd that the process has loaded takes the place of CCD_COMPARE_THEIRS, if there is one
  *   CCD_COMPARE_BASE    theirs or ours: whose answers the program gets
  *   CCD_COMPARE_EVERY   one query in so many is judged; 0: none
  *   CCD_COMPARE_TIMES   0: no times are measured
@@ -23,11 +24,13 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <link.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/sendfile.h>
 #include <unistd.h>
 
 #define EXPORT __attribute__((visibility("default")))
@@ -65,6 +68,45 @@ static compare_counts_t *counts_map(const char *dir)
     return (compare_counts_t *)mapped;
 }
 
+/* Finds a libccd in the process, under any name: a wheel carries one that no other program sees. Returns its path, or NULL. */
+static const char *loaded_libccd(void)
+{
+    struct link_map *object = NULL;
+    Dl_info own, found;
+    void *const process = dlopen(NULL, RTLD_NOW), *symbol;
+    if (!process || dlinfo(process, RTLD_DI_LINKMAP, &object) != 0 || !dladdr(&compare, &own))
+        return NULL;
+    for (; object; object = object->l_next) {
+        void *const handle = *object->l_name ? dlopen(object->l_name, RTLD_LAZY | RTLD_NOLOAD) : NULL;
+        if (!handle)
+            continue;
+        /* Of this object or of one that it depends on. */
+        const int is_libccd = !find_symbol(handle, "ccdMPRPenetration", &symbol) && dladdr(symbol, &found) &&
+                              found.dli_fbase != own.dli_fbase && !dlsym(handle, "ccdImplementation");
+        dlclose(handle);
+        if (is_libccd)
+            return found.dli_fname;
+    }
+    return NULL;
+}
+
+/* Opens a copy of a libccd of the process as the one to compare with. Returns 0 on success. */
+static int open_loaded(const char *path, const char *dir)
+{
+    char copy[4096];
+    snprintf(copy, sizeof copy, "%s/loaded-%d.so", dir, (int)getpid());
+    const int from = open(path, O_RDONLY | O_CLOEXEC), to = open(copy, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    if (from < 0 || to < 0)
+        give_up(path);
+    while (sendfile(to, from, NULL, 1 << 20) > 0)
+        continue;
+    close(from);
+    close(to);
+    const int failed = library_open(&compare.library[COMPARE_THEIRS], copy, 0);
+    unlink(copy);
+    return failed;
+}
+
 static uint64_t time_counted; /* of this process's */
 
 static void forked(void) { time_counted = 0; }
@@ -74,11 +116,18 @@ static void start(void)
     const char *const theirs = getenv("CCD_COMPARE_THEIRS"), *const ours = getenv("CCD_COMPARE_OURS");
     const char *const dir = getenv("CCD_COMPARE_DIR");
     const char *const base_name = setting("CCD_COMPARE_BASE", "theirs");
+    const char *const loaded = strcmp(setting("CCD_COMPARE_LOADED", "0"), "0") != 0 ? loaded_libccd() : NULL;
     if (!dir || !theirs || !ours) {
         fputs("compare: to be started by compare.sh\n", stderr);
         exit(125);
     }
-    if (library_open(&compare.library[COMPARE_THEIRS], theirs, 0) || library_open(&compare.library[COMPARE_OURS], ours, 1))
+    if (!loaded && !*theirs) {
+        fputs("compare: no libccd to compare with: name one with --libccd FILE; Debian's package is libccd2\n", stderr);
+        exit(125);
+    }
+    if (loaded ? open_loaded(loaded, dir) : library_open(&compare.library[COMPARE_THEIRS], theirs, 0))
+        exit(125);
+    if (library_open(&compare.library[COMPARE_OURS], ours, 1))
         exit(125);
     compare.counts = counts_map(dir);
     compare.base = strcmp(base_name, "theirs") != 0 ? COMPARE_OURS : COMPARE_THEIRS;
@@ -91,7 +140,7 @@ static void start(void)
         return;
     compare.counts->base = (uint64_t)compare.base;
     snprintf(compare.counts->ours, sizeof compare.counts->ours, "%s", compare.library[COMPARE_OURS].implementation());
-    snprintf(compare.counts->theirs, sizeof compare.counts->theirs, "%s", setting("CCD_COMPARE_NAME", "?"));
+    snprintf(compare.counts->theirs, sizeof compare.counts->theirs, "%s", loaded ? loaded : setting("CCD_COMPARE_NAME", "?"));
     snprintf(compare.counts->program, sizeof compare.counts->program, "%s", program_invocation_name);
 }
 

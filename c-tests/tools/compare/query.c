@@ -177,6 +177,17 @@ static void along_x(const void *obj1, const void *obj2, ccd_vec3_t *dir)
     ccdVec3Set(dir, 1, 0, 0);
 }
 
+request_t request_of(request_kind_t kind, const library_t *library, const query_t *q, samples_t *samples)
+{
+    request_t r;
+    memset(&r, 0, sizeof r);
+    r.kind = kind;
+    r.library = library;
+    r.q = q;
+    r.samples = samples;
+    return r;
+}
+
 void request_run(void *request)
 {
     request_t *r = (request_t *)request;

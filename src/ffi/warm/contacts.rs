@@ -26,7 +26,8 @@ pub struct ccd_contact_t {
     /// Metres, at least the support value of normal minus twice the slop; negative if the objects are
     /// apart there.
     pub depth: Real,
-    /// Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache.
+    /// Contact id: the same while the contact moves with obj1 or obj2, never 0; 0 without a cache. When a
+    /// contact vanishes, a new one within a quarter of the overlap's extent takes its id.
     pub id: c_uint,
 }
 

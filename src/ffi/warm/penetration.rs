@@ -13,15 +13,6 @@ use crate::math::Real;
 use crate::query::Solver;
 use crate::types::{Penetration, Solution};
 
-/// Requests pos. Costs, on average, 3 to 7 support points where the face of one object contains that of
-/// the other, 9 where neither does; in all tests at most 24. May call one support function without the
-/// other.
-pub const CCD_WANT_POS: c_uint = 1;
-/// Requests point1 and point2, at no cost.
-pub const CCD_WANT_POINTS: c_uint = 2;
-/// Requests all of these.
-pub const CCD_WANT_ALL: c_uint = 3;
-
 /// Result of a penetration query. A field that was not requested is zero.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -43,7 +34,7 @@ pub struct ccd_penetration_t {
     /// deeper the overlap, the nearer it is instead to a point between the centers, beside that plane. At
     /// most half the depth from both objects, within the tolerance. Root mean square error for objects
     /// of a quarter metre and depths up to a millimetre: 0.2 mm for faces of 3 to 6 corners, and regular
-    /// ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 7 mm for round
+    /// ones of up to 10, on a floor; 3 mm for other faces and for boxes in any pose; 8 mm for round
     /// objects and discs; 12 mm for flat bars with a curved underside; 15 mm for a cone on its side; in
     /// single precision 1 mm more. For greater depths 2 % of the smaller object's radius at a depth of 3 %
     /// of it, 6 % at 10 %, 20 % at 30 %. In a motion of 0.01 degrees pos of leaning discs jumps by at most
