@@ -31,7 +31,7 @@ use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
-use crate::types::{Settings, Solution, Status};
+use crate::types::{Direction, Settings, Solution, Status};
 
 /// The smallest effective tolerance, in rounding errors of a height: twice the least gap of a portal that is
 /// perpendicular to the ray.
@@ -63,7 +63,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
 ) -> Result<Solution, Stop> {
     trace::stage("ray");
     let mut query = SupportQuery::new(md, None, settings.tolerance);
-    let first = query.evaluate_first(dir, false)?;
+    let first = query.evaluate_first(&Direction::exact(*dir))?;
     set.push(&query.upper.dir, &first);
     let corners = [set.farthest_vertex(dir); 3];
     let mut portal = Portal { corners };
@@ -82,9 +82,8 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     } else {
         ray.upper()
     };
-    if !ray.exit_plane.is_general() {
-        ray.query.confirm(&ray.exit_plane)?;
-    }
+    ray.query.upper = ray.exit_plane;
+    ray.query.confirm_upper()?;
     Ok(ray.result(&portal, lower))
 }
 
@@ -145,7 +144,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             self.iterations += 1;
             self.set.make_room(&mut portal.corners);
             let length = n.norm();
-            self.query.tolerance = self.settings.tolerance * (along / length);
+            self.query.tilt_rule.tolerance = self.settings.tolerance * (along / length);
             let sample = self.query.evaluate(self.set, &(n / length))?;
             self.note_planes(self.set.len() - 1);
             if !(n.dot(&sample.w) - offset > rounding) {
@@ -159,16 +158,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
     /// parameter.
     fn note_planes(&mut self, first: usize) {
         for k in first..self.set.len() {
-            let dir = self.set.dir(k);
-            let point = self.set.point(VertexSet::<N>::pair_of_entry(k));
-            let depth = dir.dot(&point.v);
-            if depth < self.upper() * self.dir.dot(&dir) {
-                self.exit_plane = SupportPlane {
-                    dir,
-                    depth,
-                    point,
-                    tilt: self.query.tilt(),
-                };
+            let plane = self.query.plane(self.set, k);
+            if plane.depth < self.upper() * self.dir.dot(&plane.dir) {
+                self.exit_plane = plane;
             }
         }
     }
@@ -209,10 +201,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
             depth_lower: lesser(larger(lower, 0.0), depth),
             dir: self.dir,
             normal: self.exit_plane.dir,
+            is_general: self.exit_plane.direction().is_general(),
             point1,
             point2,
             iterations: self.iterations,
-            is_general: self.exit_plane.is_general(),
             status: status.unless(depth - lower <= self.tolerance()),
             ..Solution::default()
         }
@@ -223,7 +215,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{
         Random, Rotation, Shape, ball, corners, difference, ellipsoid, hull, placed,
     };

@@ -44,17 +44,17 @@ use crate::gjk::intersect::contains_origin;
 use crate::local::face::Face;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
 use crate::minkowski::newton::newton_step;
-use crate::minkowski::sphere_fit::{SAME_CENTER_REL, SphereFit};
+use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
 use crate::minkowski::support::{self, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILED_PREDICTIONS, MAX_MISS_REL,
-    MIN_GAIN_GAPS, SAME_VALLEY_COS,
+    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL,
+    MIN_GAIN_GAPS, NEGLIGIBLE_GAPS, SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
-use crate::types::{Settings, Solution, Status};
+use crate::types::{Direction, Settings, Solution, Status};
 
 /// The limit of support points of a walk. Measured: with it 12 of 12,000 walks on the recorded pairs end without a
 /// minimum, the longest that ends with one takes 45; with 48, 2 % of coincident centers end so at fine tolerances. A power
@@ -63,12 +63,7 @@ pub const MAX_WALK_POINTS: usize = 64;
 /// The difference of two depths, in tolerances, up to which they are equal. The rest of the tolerance is left for the error of
 /// the witness points. Answers are insensitive to 0.25; with 1.5 one proof in 420 more has
 /// witness points that are not the depth apart.
-const EQUAL_TOLERANCES: f64 = 0.75;
-/// The angle, radians, between the normal of a narrow face and the direction of the upper bound up to which they are one
-/// minimum. Measured: without it local searches of cones, cylinders and ellipsoids take 2 to 3 % more support points.
-const SAME_MINIMUM_RAD: f64 = 0.25 * CONFIRM_TILT_RAD;
-/// The squared angle, radians, up to which two directions are equal. Answers are insensitive: 1e-16 to 1e-6.
-const SAME_DIRECTION_ANGLE2: f64 = 1e-10;
+const EQUAL_TOLERANCES: f64 = 1.0 - NEGLIGIBLE_GAPS;
 
 /// The next step of a walk.
 enum Step {
@@ -122,17 +117,15 @@ struct Walk<'w, 'q, A, B, const N: usize> {
     iterations: u64,
 }
 
-/// Finds a local minimum of the penetration depth from unit `start`, by the steps at the head of this file. `is_general`:
-/// true if `start` is in general position. The set may have entries. Any status but [`Status::Converged`] comes with the
-/// upper bound and the vertices of its support point.
+/// Finds a local minimum of the penetration depth from `start`, by the steps at the head of this file. The set may have
+/// entries. Any status but [`Status::Converged`] comes with the upper bound and the vertices of its support point.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
-    start: &Vec3,
-    is_general: bool,
+    start: &Direction,
     settings: &Settings,
 ) -> Result<Solution, Stop> {
     const { assert!(N >= MAX_WALK_POINTS) };
@@ -149,25 +142,25 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         settings,
         iterations: 0,
     };
-    let ray = walk.start(start, is_general)?;
+    let ray = walk.start(start)?;
     walk.run(ray)
 }
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Evaluates the start direction, and others if it is no good start. Returns the first ray.
-    fn start(&mut self, start: &Vec3, is_general: bool) -> Result<Vec3, Stop> {
+    fn start(&mut self, start: &Direction) -> Result<Vec3, Stop> {
         trace::stage("local search");
-        let first = self.query.evaluate_first(start, is_general)?;
+        let first = self.query.evaluate_first(start)?;
         self.set.push(&self.query.upper.dir, &first);
         if !self.is_centered {
             // Not stored in the set: as a corner it would make the portals wide.
-            let opposite = self.query.evaluate_point(&-start)?;
+            let opposite = self.query.evaluate_point(&-start.n)?;
             self.interior = (first.v + opposite.v) * 0.5;
         }
-        let to_origin = normalise_unscaled(&-self.interior).unwrap_or(*start);
+        let to_origin = normalise_unscaled(&-self.interior).unwrap_or(start.n);
         // Without centers, or if the start direction leads to the far side: evaluate the direction from the interior
         // point to the origin too.
-        if !self.is_centered || to_origin.dot(start) < 0.0 {
+        if !self.is_centered || to_origin.dot(&start.n) < 0.0 {
             self.query.evaluate(self.set, &to_origin)?;
         }
         Ok(self.query.upper.dir)
@@ -269,7 +262,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 let mut prediction = None;
                 let worthwhile = self.query.upper.depth - MIN_GAIN_GAPS * tolerance;
                 if !along_normal {
-                    if self.failures < MAX_FAILED_PREDICTIONS {
+                    if self.failures < MAX_FAILURES {
                         prediction = self.predict(&face);
                     }
                     if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
@@ -310,13 +303,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                         along_normal = true;
                         continue;
                     }
-                    let plane = SupportPlane {
-                        // As it was evaluated.
-                        dir: self.set.dir(sample.pair.a.into()),
-                        depth: sample.h,
-                        point: self.set.point(sample.pair),
-                        tilt: self.query.tilt(),
-                    };
+                    let plane = self.query.plane(self.set, sample.pair.a.into());
                     return Ok(match is_inside {
                         true => Step::Face(face, plane),
                         false => Step::Ray(face.normal),
@@ -338,7 +325,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
             let cone = 2.0 * face.foot_depth() / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
-                lesser(SAME_MINIMUM_RAD * SAME_MINIMUM_RAD, tolerance / upper.depth)
+                lesser(CONFIRM_RANGE_RAD[0].powi(2), tolerance / upper.depth)
             } else {
                 0.25 * cone * cone
             };
@@ -524,9 +511,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             depth: *depth,
             dir: *dir,
             normal: *dir,
+            is_general: plane.direction().is_general(),
             point1,
             point2,
-            is_general: plane.is_general(),
             ..self.upper_bound(Status::Converged)
         };
         // A face and its support plane differ by the rounding of both.
@@ -545,11 +532,11 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             depth,
             dir,
             normal: dir,
+            is_general: self.query.upper.direction().is_general(),
             point1: point.v1,
             point2: point.v2,
             iterations: self.iterations,
             status,
-            is_general: self.query.upper.is_general(),
             ..Solution::default()
         }
     }
@@ -572,7 +559,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 /// Returns whether two unit vectors count as the same, by their difference: the product of vectors that are rounded to single
 /// precision differs from 1 by as much as that of vectors 3e-4 rad apart.
 fn is_same(a: &Vec3, b: &Vec3) -> bool {
-    (a - b).norm_squared() <= SAME_DIRECTION_ANGLE2
+    (a - b).norm_squared() <= MIN_ANGLE2
 }
 
 #[cfg(test)]
@@ -580,7 +567,6 @@ mod tests {
     use super::*;
     use crate::math::{EPSILON, perpendicular};
     use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
     };
@@ -618,7 +604,8 @@ mod tests {
         let before = md.supports();
         let mut query = SupportQuery::new(md, center.as_ref(), 0.0);
         let mut set = VertexSet::<MAX_WALK_POINTS>::EMPTY;
-        let found = penetration(&mut query, &mut set, start, false, settings);
+        let start = Direction::exact(*start);
+        let found = penetration(&mut query, &mut set, &start, settings);
         (found, md.supports() - before)
     }
 

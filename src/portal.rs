@@ -31,7 +31,7 @@ use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
-use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
+use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::trace;
 
@@ -50,10 +50,6 @@ pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 /// to 13 % more instructions; with 0.15, boxes at medium depth take 11 % more, and spheres 8 % more support points; by
 /// the upper bound alone, boxes and icosahedra of every depth take 4 % more.
 const SHALLOW_REL: f64 = 0.25;
-/// The number of tilts in discovery that may find no point on the other side of the ray before the perpendicular direction is
-/// evaluated. Measured: with 3, support points and instructions differ by less than 0.1 %, and rays out of boxes and
-/// cylinders take 3 % fewer support points.
-const MAX_TILTS: u32 = 5;
 /// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
 /// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
 /// support points in intersection tests. Without growth nearly touching spheres take up to 17 support points, not 15.
@@ -63,7 +59,7 @@ const TILT_GROWTH: f64 = 1.4;
 /// global minimum, and 13 % more for a local one of hulls, whose portals then extend into other valleys.
 const WIDEST_TILT_DISTANCES: f64 = 3.0;
 /// See [`WIDEST_TILT_DISTANCES`]. Measured: without the edge 21 % more support points.
-const WIDEST_TILT_EDGES: f64 = 0.75;
+const WIDEST_TILT_EDGES: f64 = 0.25 * WIDEST_TILT_DISTANCES;
 /// The upper bound, in lengths of the ray in D, above which [`discover`] evaluates the perpendicular to the ray at once, where
 /// its caller allows that. Off the middle of a wide plate the line of the centers is nearly parallel to the plate, its
 /// support value is as large as the plate, and its direction far from the minimum's. Measured (support points of boxes
@@ -221,7 +217,7 @@ impl OpenPortal {
         self.towards_ray = normalise_unscaled(&way).unwrap_or_else(|| perpendicular(ray));
         self.height = 0.0;
         // A tilt would be too small to find another point.
-        self.failures = MAX_TILTS;
+        self.failures = MAX_FAILURES;
     }
 
     /// Returns whether `w` is closer to the ray than the corners, or beyond it.
@@ -272,7 +268,7 @@ impl OpenPortal {
     }
 
     /// Returns the next direction, of any length: that of the upper bound, tilted towards the ray; of a large upper bound, and
-    /// after [`MAX_TILTS`] failures, the perpendicular to the ray. `length`: approximate length of the ray in D, metres.
+    /// after [`MAX_FAILURES`] failures, the perpendicular to the ray. `length`: approximate length of the ray in D, metres.
     #[inline(always)]
     fn next_dir(&self, upper: &SupportPlane, length: f64) -> Vec3 {
         let edge = self.v2.map_or(0.0, |v2| (v2.w - self.v1.w).norm());
@@ -280,7 +276,7 @@ impl OpenPortal {
         // The distance of the corners from the ray.
         let off = -self.height / norm;
         let mut tilt = f64::INFINITY;
-        if self.failures < MAX_TILTS && !(upper.depth > self.largest_upper) {
+        if self.failures < MAX_FAILURES && !(upper.depth > self.largest_upper) {
             // One product, after the maximum: codegen. (Measured: with two a hit takes 30 instructions more.)
             let distances = WIDEST_TILT_DISTANCES / WIDEST_TILT_EDGES * off;
             let widest = WIDEST_TILT_EDGES * distances.max(edge) / length;
@@ -354,7 +350,7 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 }
 
 /// Evaluates the next direction of a discovery. Returns its point, or `known` if that is farther towards the ray; `None`:
-/// the set is full, or directions have failed [`MAX_TILTS`] times before.
+/// the set is full, or directions have failed [`MAX_FAILURES`] times before.
 #[inline(always)]
 fn evaluate_towards_ray<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
@@ -372,7 +368,7 @@ fn evaluate_towards_ray<A: SupportMap, B: SupportMap, const N: usize>(
     let sample = query.evaluate(set, &dir)?;
     let height = open.towards_ray.dot(&sample.w);
     if !(height > 0.0) {
-        if open.failures >= MAX_TILTS {
+        if open.failures >= MAX_FAILURES {
             return Ok(None);
         }
         open.failures += 1;

@@ -27,20 +27,17 @@ use crate::epa::{self, expand::EpaLimits};
 use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
 use crate::local;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
-use crate::minkowski::general_position::{
-    HAS_TILT, MAX_TILT_RAD, in_general_position, tilted_in_plane,
-};
+use crate::minkowski::general_position::MAX_TILT_RAD;
 use crate::minkowski::separating_axis::test_axis;
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
-use crate::minkowski::support_query::{Direction, Stop, SupportQuery, if_overlapping};
+use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::{GAP_REL, Scale};
-use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::minkowski::warm_start::WarmStart;
+use crate::minkowski::warm_start::{WarmKind, WarmStart};
 use crate::paper::gao::{self, Until};
 use crate::query::signed_distance::DistanceOptions;
 use crate::trace;
-use crate::types::{Settings, Solution, Status};
+use crate::types::{Direction, Settings, Solution, Status};
 
 /// A query by name: what C and Rust callers choose between.
 #[derive(Clone, Copy, Debug)]
@@ -153,7 +150,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             found = self.solve(solver, state, arena);
             attempts += 1;
             // If points contradict each other, once more from a cold state, with all directions tilted.
-            if attempts == 2 || self.difference.least_tilt() == 0.0 {
+            if attempts == 2 || !self.difference.is_contradicted() {
                 break;
             }
             *state = WarmStart::COLD;
@@ -200,17 +197,21 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let Some(mut axis) = state.separating_axis() else {
             return Ok(());
         };
-        if !state.is_general {
-            axis = in_general_position(&axis);
-        }
-        if test_axis(&self.difference, &mut axis)? {
+        axis = axis.general();
+        if test_axis(&self.difference, &mut axis.n)? {
             trace::end(None);
-            return Err(Stop::Separated(Direction {
-                n: axis,
-                tilt: MIN_TILT_RAD,
-            }));
+            return Err(Stop::Separated(axis));
         }
         Ok(())
+    }
+
+    /// Returns the direction of the state if it is used, else that of a cold query.
+    #[inline(always)]
+    fn start(&self, state: &WarmStart, is_used: bool) -> Direction {
+        match is_used {
+            true => state.dir,
+            false => Direction::exact(self.cold_start()),
+        }
     }
 
     /// Returns the start direction of a cold query, unit: from the difference of the centers to the origin, else
@@ -248,10 +249,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         query.scale.note(&witness);
         // Objects that touch within rounding count as separated, in every query.
         if !(hit.depth * hit.dir.dot(&hit.normal) > query.scale.contact_eps()) {
-            return Err(Stop::Separated(Direction {
-                n: hit.normal,
-                tilt: if hit.is_general { MIN_TILT_RAD } else { 0.0 },
-            }));
+            return Err(Stop::Separated(hit.direction()));
         }
         if set.len() == 0 {
             // Without a direction: no support call returned this point.
@@ -275,15 +273,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Tests whether the objects overlap; returns [`Stop::Separated`] if they do not. The result is blank.
     #[inline(always)]
     fn intersect(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
-        let (first, is_general) = match state.is_overlap() {
-            true => (state.dir, state.is_general),
-            false => (self.cold_start(), false),
-        };
-        let centers = self.centers.as_ref();
-        let dir = intersect(&self.difference, centers, &first, is_general)?;
+        let first = self.start(state, state.is_overlap());
+        let dir = intersect(&self.difference, self.centers.as_ref(), &first)?;
         // A state with a depth, from a penetration query, is more useful: keep it.
         if !(state.is_overlap() && state.depth > 0.0) {
-            *state = WarmStart::towards(dir, HAS_TILT);
+            *state = WarmStart::towards(Direction::remembered(dir, true));
         }
         Ok(Solution::default())
     }
@@ -310,13 +304,11 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Runs the local search. Not inlined, so that its stack frame is released before the global search runs.
     #[inline(never)]
     fn descend(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
-        let remembered = state.direction();
-        let start = remembered.unwrap_or_else(|| self.cold_start());
+        let start = self.start(state, state.kind != WarmKind::Cold);
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        let is_general = remembered.is_some() && state.is_general;
-        let mut hit = local::penetration(&mut query, &mut set, &start, is_general, &self.settings)?;
+        let mut hit = local::penetration(&mut query, &mut set, &start, &self.settings)?;
         *state = WarmStart::hit(&hit);
         if hit.status == Status::Converged && self.settings.pos {
             hit.pos = self.contact_position(&set, &hit, &query.scale)?;
@@ -340,8 +332,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let tolerance = settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        let start = hit.normal;
-        let found = local::penetration(&mut query, &mut set, &start, true, &settings);
+        let found = local::penetration(&mut query, &mut set, &hit.direction(), &settings);
         let Some(found) = if_overlapping(found)? else {
             return Ok(false);
         };
@@ -375,7 +366,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let mut set = VertexSet::EMPTY;
         let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
         self.prove_overlap(&mut hit, &mut set, false)?;
-        *state = WarmStart::towards(hit.normal, hit.is_general);
+        *state = WarmStart::towards(hit.direction());
         hit.pos = hit.middle();
         Ok(hit)
     }
@@ -384,9 +375,9 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// last direction, else from the start direction of a cold query. `plane`: a unit normal; only directions
     /// perpendicular to it are searched.
     fn incremental(&self, plane: Option<Vec3>, state: &mut WarmStart) -> Result<Solution, Stop> {
-        let mut start = state.direction().unwrap_or_else(|| self.cold_start());
-        if let Some(m) = plane.filter(|_| HAS_TILT && !state.is_general) {
-            start = tilted_in_plane(&start, &m, MAX_TILT_RAD);
+        let mut start = self.start(state, state.kind != WarmKind::Cold);
+        if let Some(m) = plane.filter(|_| !start.is_general()) {
+            start = Direction::tilted_in_plane(&start.n, &m, MAX_TILT_RAD);
         }
         // Each iteration takes one support point; the start, the overlap and the contact position take the rest of the
         // limit of the tests (`call_limit` in c-tests/tests/stability/entries.h).
@@ -395,10 +386,10 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..self.settings
         };
         let until = Until::Shortcut;
-        let mut hit = gao::penetration(&self.difference, start, plane, until, &settings, |_| ())?;
+        let mut hit = gao::penetration(&self.difference, start.n, plane, until, &settings, |_| ())?;
         let mut set = VertexSet::EMPTY;
         let scale = self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
-        *state = WarmStart::towards(hit.normal, hit.is_general);
+        *state = WarmStart::towards(hit.direction());
         hit.pos = if settings.pos && hit.status == Status::Converged && plane.is_none() {
             self.contact_position(&set, &hit, &scale)?
         } else {
@@ -419,13 +410,13 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Solution, Stop> {
         let ray = self.cold_start();
-        let (dir, is_general) = match state.is_overlap() {
-            true => (state.dir, state.is_general),
-            false => (ray, false),
+        let dir = match state.is_overlap() {
+            true => state.dir,
+            false => Direction::exact(ray),
         };
         let mut query = SupportQuery::new(&self.difference, center, limits.gap.tolerance);
         // Most queries of separated objects end here, before the request is made.
-        let first = query.evaluate_first(&dir, is_general)?;
+        let first = query.evaluate_first(&dir)?;
         let request = EpaRequest {
             center,
             ray,

@@ -85,6 +85,25 @@ impl Status {
     }
 }
 
+/// A direction of D, and by how much it was tilted into general position
+/// ([`general_position`](crate::minkowski::general_position)).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Direction {
+    /// Unit.
+    pub n: Vec3,
+    /// Radians; 0 if it was not tilted. A number, because a `bool` would hold the variant of a `Result`: codegen, see
+    /// README.
+    pub tilt: f64,
+}
+
+impl Direction {
+    /// Returns whether the direction is in general position.
+    #[inline(always)]
+    pub fn is_general(&self) -> bool {
+        self.tilt > 0.0
+    }
+}
+
 /// Depth, direction and position of an overlap, or of the gap of separated objects, whose depth is negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
@@ -111,7 +130,7 @@ pub struct Solution {
     pub iterations: u64,
     /// Why the search ended.
     pub status: Status,
-    /// True if `normal` is in general position ([`crate::minkowski::general_position`]).
+    /// True if `normal` is in general position. Not a [`Direction`]: codegen, see README.
     pub is_general: bool,
     /// The radii of the sphere fits of obj1 and obj2, metres, for the state of the next query; 0 unless a prediction was
     /// confirmed.

@@ -20,7 +20,7 @@ use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
+use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES};
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::Portal;
 use crate::trace;
@@ -30,7 +30,7 @@ use crate::trace;
 /// curved pair takes 0.1 to 0.5 support points fewer.
 pub const MAX_REFINEMENTS: usize = 4;
 /// The largest number of known differences that replace a corner before a direction is evaluated. Insensitive: 5 to 10.
-const MAX_REPLACED: u32 = 10;
+const MAX_REPLACED: u32 = 2 * MAX_FAILURES;
 
 /// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: a triangle of points of D
 /// that the ray crosses, with an outward normal. `lower`: the lower bound of the depth, metres. `tolerance`: metres. A full

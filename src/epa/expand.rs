@@ -29,6 +29,7 @@ use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
+use crate::minkowski::tuning::NEGLIGIBLE_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::is_shallow;
 use crate::trace;
@@ -45,7 +46,7 @@ const EXACT_PLANES_REL: f64 = 1e-11;
 const MAX_SCANNED: usize = 16;
 /// The part of the gap between the closest face and the upper bound that a known difference must close to be inserted without
 /// a support call. Insensitive: 0.45 to 0.8; without it deep boxes take 50 % more instructions.
-const INSERT_GAIN_REL: f64 = 0.75;
+const INSERT_GAIN_REL: f64 = 1.0 - NEGLIGIBLE_GAPS;
 
 /// The limits of a query.
 #[derive(Clone, Copy, Debug)]
@@ -191,9 +192,9 @@ mod tests {
     use super::*;
     use crate::math::EPSILON;
     use crate::minkowski::support::Fault;
-    use crate::minkowski::support_query::Direction;
     use crate::minkowski::vertex_set::{Vertex, VertexPair};
     use crate::test_shapes::{corners, difference, hull};
+    use crate::types::Direction;
 
     const LIMITS: EpaLimits = EpaLimits {
         gap: GapLimit::new(if EPSILON < 1e-10 { 1e-9 } else { 1e-4 }, 0.0),

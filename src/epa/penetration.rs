@@ -145,17 +145,18 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
     }
     solver.query.confirm_upper()?;
     // A direction that was evaluated before the upper bound of a later polytope is tilted by the next query.
-    let is_general = solver.query.upper.is_general() && dir == solver.query.upper.dir;
+    let upper = &solver.query.upper;
+    let is_general = upper.direction().is_general() && dir == upper.dir;
     Ok(Solution {
         depth,
         depth_lower: lower.min(depth),
         dir,
         normal: dir,
+        is_general,
         point1: points[0],
         point2: points[1],
         iterations: solver.iterations,
         status,
-        is_general,
         radius: solver.fit.confirmed_radius(),
         ..Solution::default()
     })
@@ -351,9 +352,8 @@ mod tests {
     use crate::epa::buffers::{MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
     use crate::math::{EPSILON, normalise_unscaled};
     use crate::minkowski::support::{Fault, MinkowskiDifference};
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
-    use crate::types::Settings;
+    use crate::types::{Direction, Settings};
     use core::cell::Cell;
 
     const TOLERANCE: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-4 };
@@ -394,7 +394,7 @@ mod tests {
             wants_points: true,
         };
         let mut query = SupportQuery::new(md, center, TOLERANCE);
-        let first = query.evaluate_first(&request.ray, false)?;
+        let first = query.evaluate_first(&Direction::exact(request.ray))?;
         let mut set = VertexSet::EMPTY;
         let cold = WarmStart::COLD;
         penetration(&mut query, &first, &request, arena, &mut set, &cold)
@@ -675,7 +675,7 @@ mod tests {
                 wants_points: true,
             };
             let mut query = SupportQuery::new(&md, Some(&center), TOLERANCE.max(1e-6));
-            let Ok(first) = query.evaluate_first(&request.ray, false) else {
+            let Ok(first) = query.evaluate_first(&Direction::exact(request.ray)) else {
                 continue;
             };
             let mut set = VertexSet::EMPTY;

@@ -25,11 +25,11 @@ use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{self, Fault, SupportMap};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_MISS_REL, MAX_STALLS, MIN_GAIN_GAPS};
+use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL, MIN_GAIN_GAPS};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
-use crate::types::Status;
+use crate::types::{Direction, Status};
 
 /// The largest tangent of the angle from the normal of the best plane to a direction that is evaluated. Measured: without a
 /// limit, distances take 4 to 12 % more support points; with 1.0, two of 2,100 exactly touching pairs take 882 of them
@@ -54,10 +54,8 @@ pub struct Goal {
 pub struct ClosestPoints {
     /// The largest −h(n), metres.
     pub lower: f64,
-    /// Its direction, unit.
-    pub normal: Vec3,
-    /// True if it is in general position.
-    pub is_general: bool,
+    /// Its direction.
+    pub normal: Direction,
     /// The distance of the points, metres.
     pub upper: f64,
     /// The closest point of obj1.
@@ -72,8 +70,7 @@ pub struct ClosestPoints {
     pub is_inside: bool,
 }
 
-/// Finds the closest points. Starts along unit `start`. `fit`: may hold the sphere radii of the last query. `is_general`:
-/// true if `start` is in general position.
+/// Finds the closest points. Starts along `start`. `fit`: may hold the sphere radii of the last query.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
@@ -81,8 +78,7 @@ pub struct ClosestPoints {
 pub fn closest_points<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
     fit: &mut SphereFit,
-    start: &Vec3,
-    is_general: bool,
+    start: &Direction,
     goal: &Goal,
 ) -> Result<ClosestPoints, Fault> {
     let mut search = ClosestPointsSearch {
@@ -90,21 +86,20 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         fit,
         set: VertexSet::EMPTY,
         simplex: Simplex::EMPTY,
-        to_origin: *start,
+        to_origin: start.n,
         upper: f64::INFINITY,
         was_prediction: false,
         is_inside: false,
     };
     let before = search.query.support_points();
-    let status = search.run(goal, start, is_general)?;
+    let status = search.run(goal, start)?;
     search.query.confirm_upper()?;
     let (point1, point2) = search.points();
     let iterations = search.query.support_points() - before;
     let bound = search.query.upper;
     Ok(ClosestPoints {
         lower: -bound.depth,
-        normal: bound.dir,
-        is_general: bound.is_general(),
+        normal: bound.direction(),
         upper: (point2 - point1).norm(),
         point1,
         point2,
@@ -144,11 +139,11 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     }
 
     /// Runs the search.
-    fn run(&mut self, goal: &Goal, start: &Vec3, is_general: bool) -> Result<Status, Fault> {
+    fn run(&mut self, goal: &Goal, start: &Direction) -> Result<Status, Fault> {
         trace::stage("closest points");
         let first = self
             .query
-            .evaluate_signed(&mut self.set, start, is_general)?
+            .evaluate_signed(&mut self.set, &start.n, start.tilt)?
             .vertex();
         self.add(first);
         let mut closest = f64::INFINITY;
@@ -172,7 +167,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
                 }
                 closest = self.upper;
             }
-            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_STALLS) else {
+            let Some(dir) = unit(&self.to_origin).filter(|_| stalls <= MAX_FAILURES) else {
                 return Ok(Status::Rounding);
             };
             is_step = !self.evaluate_prediction(&dir, self.gap(goal))?;
@@ -183,12 +178,12 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
             was_limited = limited.is_some();
             if let Some(n) = limited {
                 is_step = false;
-                self.query.evaluate_signed(&mut self.set, &n, false)?;
+                self.query.evaluate_signed(&mut self.set, &n, 0.0)?;
                 continue;
             }
             let w = self
                 .query
-                .evaluate_signed(&mut self.set, &dir, false)?
+                .evaluate_signed(&mut self.set, &dir, 0.0)?
                 .vertex();
             // By more than the errors of two points.
             let level = 2.0 * self.query.scale.support_eps();
@@ -255,7 +250,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
         let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
             return Ok(false);
         };
-        let sample = self.query.evaluate_signed(&mut self.set, &n, false)?;
+        let sample = self.query.evaluate_signed(&mut self.set, &n, 0.0)?;
         self.was_prediction = true;
         self.fit.is_confirmed = sample.h <= value + MAX_MISS_REL * (bound.depth - value);
         Ok(true)
@@ -316,8 +311,7 @@ mod tests {
                     closest_points(
                         &mut SupportQuery::new(&md, None, 0.0),
                         &mut fit,
-                        &start,
-                        false,
+                        &Direction::exact(start),
                         &goal,
                     )
                 } else {
@@ -326,8 +320,7 @@ mod tests {
                     closest_points(
                         &mut SupportQuery::new(&md, None, 0.0),
                         &mut fit,
-                        &start,
-                        false,
+                        &Direction::exact(start),
                         &goal,
                     )
                 }
@@ -365,7 +358,8 @@ mod tests {
             let mut query = SupportQuery::new(&md, None, 0.0);
             let mut fit = SphereFit::default();
             let start = turn * Vec3::new(1.0, 1.0, 1.0).normalize();
-            let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
+            let found =
+                closest_points(&mut query, &mut fit, &Direction::exact(start), &goal).unwrap();
             assert_eq!(found.status, Status::Converged, "round {round}");
             assert!(found.lower <= gap + 1e-12 && gap - found.lower <= 1e-9);
             most = most.max(found.iterations);
@@ -390,7 +384,8 @@ mod tests {
             let mut fit = SphereFit::default();
             let start = r.direction();
             let mut query = SupportQuery::new(&md, None, 0.0);
-            let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
+            let found =
+                closest_points(&mut query, &mut fit, &Direction::exact(start), &goal).unwrap();
             assert!(found.is_inside);
             assert!(found.upper < 1e-6 && found.lower < 0.0);
         }
@@ -422,7 +417,8 @@ mod tests {
             };
             let mut query = SupportQuery::new(&md, None, 0.0);
             let (mut fit, start) = (SphereFit::default(), r.direction());
-            let found = closest_points(&mut query, &mut fit, &start, false, &goal).unwrap();
+            let found =
+                closest_points(&mut query, &mut fit, &Direction::exact(start), &goal).unwrap();
             let gap = found.upper - found.lower;
             // The weights of the corners are rounded too.
             let is_closed = gap <= 16.0 * query.scale.contact_eps();

@@ -31,10 +31,11 @@ use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
 use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
-use crate::minkowski::tuning::MAX_STALLS;
+use crate::minkowski::tuning::MAX_FAILURES;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::{FAR_UPPER_REL, MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
+use crate::types::Direction;
 
 /// Capacity of the vertex set of an intersection test and of the proof of an overlap. A full set is compacted.
 pub const CAPACITY: usize = 16;
@@ -91,9 +92,8 @@ fn points_of<const N: usize>(
     })
 }
 
-/// Tests whether the objects intersect. Starts along unit `first`. `center`: the difference of trusted centers.
-/// `is_general`: true if `first` is in general position. Returns the direction of the upper bound, in which the next query
-/// of the pair can start.
+/// Tests whether the objects intersect. Starts along `first`. `center`: the difference of trusted centers.
+/// Returns the direction of the upper bound, in which the next query of the pair can start.
 ///
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
@@ -101,11 +101,10 @@ fn points_of<const N: usize>(
 pub fn intersect<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     center: Option<&SupportPoint>,
-    first: &Vec3,
-    is_general: bool,
+    first: &Direction,
 ) -> Result<Vec3, Stop> {
     let mut query = SupportQuery::new(md, center, f64::INFINITY);
-    let point = query.evaluate_first(first, is_general)?;
+    let point = query.evaluate_first(first)?;
     intersect_after_first(&mut query, center, &point)?;
     Ok(query.upper.dir)
 }
@@ -193,7 +192,7 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
         // Negated for NaN.
         if !(distance2 > eps2 && distance2 < closest2) {
             stalls += 1;
-            if stalls > MAX_STALLS {
+            if stalls > MAX_FAILURES {
                 break;
             }
         }
@@ -384,14 +383,13 @@ fn evaluate_normals_of_flat<A: SupportMap, B: SupportMap, const N: usize>(
 mod tests {
     use super::*;
     use crate::math::EPSILON;
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{Random, ball, corners, difference, hull, placed};
 
     fn test_cold<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         first: &Vec3,
     ) -> Result<Vec3, Stop> {
-        intersect(md, None, first, false)
+        intersect(md, None, &Direction::exact(*first))
     }
 
     /// Tests that the corners of the portal and the interior point enclose the origin.
@@ -405,7 +403,7 @@ mod tests {
             let md = difference(hull(&corners(half)), hull(&turned));
             let mut query = SupportQuery::new(&md, None, 0.0);
             let n = r.direction();
-            let point = query.evaluate_first(&n, false).unwrap();
+            let point = query.evaluate_first(&Direction::exact(n)).unwrap();
             let mut set = VertexSet::<16>::EMPTY;
             set.push(&n, &point);
             let corners = [set.farthest_vertex(&n); 4];
@@ -484,7 +482,7 @@ mod tests {
             v2: at,
         };
         let first = at.normalize();
-        let found = intersect(&md, Some(&c), &first, false);
+        let found = intersect(&md, Some(&c), &Direction::exact(first));
         assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
     }
 
@@ -585,19 +583,24 @@ mod tests {
                     let at = up * (2.0 * size.z + gap) + by;
                     let other: Vec<_> = cube.iter().map(|p| p + at).collect();
                     let md = difference(hull(&cube), hull(&other));
-                    let found = intersect(&md, Some(&center(at)), &at.normalize(), false);
+                    let found =
+                        intersect(&md, Some(&center(at)), &Direction::exact(at.normalize()));
                     assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
                     assert!(md.supports() < 100, "{}", md.supports());
                 }
                 let at = up * (1.5 + gap);
                 let md = difference(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
-                let found = intersect(&md, Some(&center(at)), &up, false);
+                let found = intersect(&md, Some(&center(at)), &Direction::exact(up));
                 assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
             }
         }
         // Concentric balls.
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
-        let found = intersect(&md, Some(&SupportPoint::default()), &Vec3::x(), false);
+        let found = intersect(
+            &md,
+            Some(&SupportPoint::default()),
+            &Direction::exact(Vec3::x()),
+        );
         assert!(found.is_ok());
     }
 

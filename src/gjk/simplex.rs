@@ -431,7 +431,7 @@ mod tests {
             let mut set = VertexSet::<16>::EMPTY;
             while !set.is_full() {
                 query
-                    .evaluate_signed(&mut set, &r.direction(), false)
+                    .evaluate_signed(&mut set, &r.direction(), 0.0)
                     .unwrap();
             }
             let mut simplex = Simplex::EMPTY;

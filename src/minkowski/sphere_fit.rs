@@ -16,7 +16,7 @@
 //!    outer side, the foot w predicts the least support value ρ − |w|, along −w / |w|; otherwise ρ + |w|, along
 //!    w / |w|.
 //! 3. *Confirmation.* A prediction that agrees with the evaluated support value confirms the fit; one that does
-//!    not resets the radii, and after [`MAX_FAILED_PREDICTIONS`] of them the fit is not used any more.
+//!    not resets the radii, and after [`MAX_FAILURES`] of them the fit is not used any more.
 //! 4. *Tilted direction.* The direction of the upper bound is tilted towards a face until the chord of its support point
 //!    and the new one is as close to the origin as the allowed gap permits: with the radius of a confirmed fit, else with
 //!    that of an *arc*, two samples between which e and f nearly agree, and which need be on no sphere.
@@ -29,7 +29,7 @@ use crate::math::{EPSILON, Vec3, larger, lesser, normalise_unscaled};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_RANGE_RAD, MAX_FAILED_PREDICTIONS, MAX_MISS_REL, MIN_GAIN_GAPS, SMOOTH_REL_TOL,
+    CONFIRM_RANGE_RAD, MAX_FAILURES, MAX_MISS_REL, MIN_GAIN_GAPS, SMOOTH_REL_TOL,
 };
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 
@@ -51,7 +51,8 @@ const MIN_CORE_DISTANCE_REL: f64 = if EPSILON < 1e-10 {
 } else {
     SAME_CENTER_REL
 };
-/// The least squared angle, radians, between two samples from which a radius or a curvature is computed.
+/// The least squared angle, radians, between two samples from which a radius or a curvature is computed, and between two
+/// directions that are not one. The local search is insensitive: 1e-16 to 1e-6.
 pub const MIN_ANGLE2: f64 = 1e-10;
 /// The largest ratio of the radii of two successive circles of corners. Measured: without it, proofs to 1e-10 m of shallow
 /// round pairs take 14 % more support points, warm hits 1.5 % more instructions.
@@ -336,7 +337,7 @@ impl SphereFit {
         gap: f64,
     ) -> QueryDirection {
         self.update(set, upper);
-        let is_used = self.failures < MAX_FAILED_PREDICTIONS;
+        let is_used = self.failures < MAX_FAILURES;
         let has_interior = corners.iter().any(|v| v.pair.is_interior());
         let predicted = (is_used && !has_interior).then(|| self.predict(set, corners, &normal));
         if let Some((dir, value)) = predicted.flatten() {
@@ -671,7 +672,7 @@ mod tests {
                 evaluate_beyond(query, set, fit, corners, &Vec3::x(), 1e-6, false).unwrap();
             source
         };
-        for i in 0..MAX_FAILED_PREDICTIONS {
+        for i in 0..MAX_FAILURES {
             let source = evaluate(&mut fit);
             assert_eq!((source, fit.failures), (DirectionSource::Prediction, i + 1));
             assert!(

@@ -8,7 +8,6 @@ use core::cell::Cell;
 
 use crate::geometry::barycentric;
 use crate::math::{Vec3, larger, max_abs};
-use crate::minkowski::tuning::MIN_TILT_RAD;
 
 /// A convex object, given by its support function.
 pub trait SupportMap {
@@ -101,8 +100,8 @@ pub struct MinkowskiDifference<A, B> {
     obj2: B,
     /// The number of calls of both objects' support functions.
     calls: Cell<u64>,
-    /// The least tilt of directions, radians; 0 unless the query has found points that contradict each other.
-    least_tilt: Cell<f64>,
+    /// True if a query has found points that contradict each other.
+    is_contradicted: Cell<bool>,
 }
 
 impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
@@ -112,7 +111,7 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
             obj1,
             obj2,
             calls: Cell::new(0),
-            least_tilt: Cell::new(0.0),
+            is_contradicted: Cell::new(false),
         }
     }
 
@@ -147,17 +146,16 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         }
     }
 
-    /// Returns the least tilt of the directions of a query, radians; above 0 after
-    /// [`MinkowskiDifference::tilt_directions`].
+    /// Returns whether a query has noted a contradiction.
     #[inline(always)]
-    pub fn least_tilt(&self) -> f64 {
-        self.least_tilt.get()
+    pub fn is_contradicted(&self) -> bool {
+        self.is_contradicted.get()
     }
 
-    /// Makes queries tilt all directions by at least the least useful tilt, whatever their tolerance: a support function
-    /// is wrong in a direction that was evaluated as it is.
-    pub fn tilt_directions(&self) {
-        self.least_tilt.set(MIN_TILT_RAD);
+    /// Notes that two points contradict each other: a support function is wrong in a direction that was evaluated as it
+    /// is, so that later queries tilt all directions.
+    pub fn note_contradiction(&self) {
+        self.is_contradicted.set(true);
     }
 
     /// Returns the number of support points evaluated: half the number of calls, rounded up.

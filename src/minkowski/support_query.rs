@@ -22,35 +22,13 @@
 //! results that are based on it are discarded. Only evaluated directions can detect this.
 
 use crate::math::{Vec3, from_real, larger, lesser, to_real};
-use crate::minkowski::general_position::{
-    HAS_TILT, MAX_TILT_RAD, allows_largest_tilt, tilt_rad, tilted,
-};
+use crate::minkowski::general_position::{HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, TiltRule};
 use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::MIN_TILT_RAD;
+use crate::minkowski::tuning::NEGLIGIBLE_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::trace;
-
-/// The height of a known difference above the support plane of the result, in tolerances, from which the support functions
-/// contradict themselves. A lower one leaves the depth right within the tolerance. Answers are insensitive: 0 to 4.
-const CONTRADICTION_TOLERANCES: f64 = 0.25;
-
-/// A direction that the callbacks received.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Direction {
-    /// Unit.
-    pub n: Vec3,
-    /// As in [`SupportPlane::tilt`].
-    pub tilt: f64,
-}
-
-impl Direction {
-    /// Returns whether the direction is in general position.
-    #[inline(always)]
-    pub fn is_general(&self) -> bool {
-        self.tilt > 0.0
-    }
-}
+use crate::types::Direction;
 
 /// Reason why an evaluation of the support function ends the query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,26 +86,18 @@ pub struct SupportPlane {
     pub depth: f64,
     /// The support point along the direction.
     pub point: SupportPoint,
-    /// By how much the direction is tilted into general position
-    /// ([`general_position`](crate::minkowski::general_position)), radians: at least [`MIN_TILT_RAD`], or 0. A number,
-    /// because a `bool` would hold the variant of a `Result`: codegen, see README.
+    /// The tilt of the direction: [`Direction::tilt`].
     pub tilt: f64,
 }
 
 impl SupportPlane {
-    /// Returns the direction.
+    /// Returns the direction with its tilt.
     #[inline(always)]
     pub fn direction(&self) -> Direction {
         Direction {
             n: self.dir,
             tilt: self.tilt,
         }
-    }
-
-    /// Returns whether the direction is in general position.
-    #[inline(always)]
-    pub fn is_general(&self) -> bool {
-        self.tilt > 0.0
     }
 
     /// Returns whether neither plane's point is beyond the other plane by more than rounding, `tie_eps` in metres.
@@ -142,9 +112,8 @@ impl SupportPlane {
 pub struct SupportQuery<'q, A, B> {
     /// The Minkowski difference.
     pub md: &'q MinkowskiDifference<A, B>,
-    /// The tolerance that the caller requested, metres, of which the tilt of directions is a share; 0 to evaluate every
-    /// direction as it is.
-    pub tolerance: f64,
+    /// How directions are tilted.
+    pub tilt_rule: TiltRule,
     /// The sizes of the points evaluated so far.
     pub scale: Scale,
     /// The upper bound: the plane of the least support value so far, infinite before the first evaluation. Holds its
@@ -155,8 +124,8 @@ pub struct SupportQuery<'q, A, B> {
 }
 
 impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
-    /// Makes a query without evaluations. `center`: the difference of trusted centers. `tolerance`: see
-    /// [`SupportQuery::tolerance`].
+    /// Makes a query without evaluations. `center`: the difference of trusted centers. `tolerance`: the one that the caller
+    /// requested, metres.
     #[inline(always)]
     pub fn new(
         md: &'q MinkowskiDifference<A, B>,
@@ -169,7 +138,13 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
         Self {
             md,
-            tolerance,
+            tilt_rule: TiltRule {
+                tolerance,
+                least: match md.is_contradicted() {
+                    true => MIN_TILT_RAD,
+                    false => 0.0,
+                },
+            },
             scale,
             upper: SupportPlane {
                 depth: f64::INFINITY,
@@ -199,74 +174,66 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(point)
     }
 
-    /// Returns the tilt of directions that are not in general position, radians.
-    #[inline(always)]
-    pub fn tilt(&self) -> f64 {
-        tilt_rad(self.tolerance, &self.scale, self.md.least_tilt())
-    }
-
-    /// Returns whether the tolerance allows a tilt.
-    fn has_tilt(&self) -> bool {
-        self.tilt() > 0.0
-    }
-
-    /// Evaluates unit `n` in general position ([`general_position`](crate::minkowski::general_position)); as it is if
-    /// `is_general`: it is the direction of a state then, and a pair at rest must not turn by a tilt in each query.
-    /// `confirms`: true to confirm a separating plane. The path that most tolerances take is inlined.
+    /// Evaluates unit `n` by the tilt rule; as it is if `tilt` is not 0, because the direction is that of a state then, and a
+    /// pair at rest must not turn by a tilt in each query. `confirms`: true to confirm a separating plane. The path that most
+    /// tolerances take is inlined. No [`Direction`], which would be stored for the other path: codegen, see README.
     #[inline(always)]
     fn evaluate_plane(
         &mut self,
         n: &Vec3,
-        is_general: bool,
+        tilt: f64,
         confirms: bool,
     ) -> Result<SupportPlane, Fault> {
-        if HAS_TILT && (is_general || !allows_largest_tilt(self.tolerance, &self.scale)) {
-            return self.evaluate_with_tilt(*n, is_general, confirms);
+        if tilt > 0.0 || !self.tilt_rule.allows_largest(&self.scale) {
+            return self.evaluate_with_tilt(n, tilt, confirms);
         }
-        let plane = self.evaluate_tilted(n, if HAS_TILT { MAX_TILT_RAD } else { 0.0 })?;
-        if HAS_TILT && self.may_separate(n, &plane) {
+        let plane = self.evaluate_tilted(n, MAX_TILT_RAD)?;
+        if self.may_separate(n, &plane) {
             return self.evaluate_untilted(*n, plane);
         }
         Ok(plane)
     }
 
     /// Continues [`SupportQuery::evaluate_plane`] with any other tilt than the largest. With none, because the tolerance
-    /// allows none: if the plane and the upper bound contradict each other, the query runs again with all directions
-    /// tilted ([`Pair::run`](crate::query::Pair::run)). (The first direction may be tilted by more than the size allows,
-    /// which is not known yet.)
+    /// allows none, the plane is compared with the upper bound.
     #[inline(never)]
     fn evaluate_with_tilt(
         &mut self,
-        n: Vec3,
-        is_general: bool,
+        n: &Vec3,
+        tilt: f64,
         confirms: bool,
     ) -> Result<SupportPlane, Fault> {
-        if is_general {
-            let plane = self.evaluate_tilted(&n, 0.0)?;
-            let tilt = MIN_TILT_RAD;
+        if tilt > 0.0 {
+            let plane = self.evaluate_tilted(n, 0.0)?;
             return Ok(SupportPlane { tilt, ..plane });
         }
-        let plane = self.evaluate_tilted(&n, self.tilt())?;
-        if plane.is_general() {
-            return match self.may_separate(&n, &plane) {
-                true => self.evaluate_untilted(n, plane),
-                false => Ok(plane),
-            };
+        let plane = self.evaluate_tilted(n, self.tilt_rule.tilt(&self.scale))?;
+        if self.may_separate(n, &plane) {
+            return self.evaluate_untilted(*n, plane);
         }
-        let is_first = !(self.upper.depth < f64::INFINITY);
-        if !is_first && !plane.is_consistent(&self.upper, self.scale.tie_eps()) {
-            self.md.tilt_directions();
-        }
-        if confirms && !self.scale.is_depth(plane.depth) {
-            self.confirm(&plane)?;
+        if !(plane.tilt > 0.0) {
+            if self.upper.depth < f64::INFINITY {
+                self.compare(&plane, &{ self.upper });
+            }
+            if confirms && !self.scale.is_depth(plane.depth) {
+                self.confirm(&plane)?;
+            }
         }
         Ok(plane)
     }
 
-    /// Evaluates unit `n` turned by `tilt`, radians.
+    /// Returns whether a tilted direction does not separate, but its point does not prove that unit `n` does not either.
+    #[inline(always)]
+    fn may_separate(&self, n: &Vec3, tilted: &SupportPlane) -> bool {
+        tilted.tilt > 0.0
+            && self.scale.is_depth(tilted.depth)
+            && !self.scale.is_depth(n.dot(&tilted.point.v))
+    }
+
+    /// Evaluates unit `n` tilted by `tilt`, radians; 0 to evaluate it as it is.
     #[inline(always)]
     fn evaluate_tilted(&mut self, n: &Vec3, tilt: f64) -> Result<SupportPlane, Fault> {
-        let dir = representable(&tilted(n, tilt));
+        let dir = representable(&Direction::tilted(n, tilt).n);
         let point = self.evaluate_point(&dir)?;
         let depth = dir.dot(&point.v);
         trace::direction(&dir, depth, lesser(depth, self.upper.depth));
@@ -276,13 +243,6 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
             point,
             tilt,
         })
-    }
-
-    /// Returns whether the tilted direction of unit `n` does not separate, but its point does not prove that n does not
-    /// either.
-    #[inline(always)]
-    fn may_separate(&self, n: &Vec3, tilted: &SupportPlane) -> bool {
-        self.scale.is_depth(tilted.depth) && !self.scale.is_depth(n.dot(&tilted.point.v))
     }
 
     /// Evaluates unit `n` as it is after `tilted`. Returns `tilted` if the two points contradict each other. Takes
@@ -301,47 +261,42 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     /// [`Fault::NonFinite`].
     #[inline(always)]
     pub fn confirm_upper(&mut self) -> Result<(), Fault> {
-        if HAS_TILT && !self.upper.is_general() {
-            return self.confirm_upper_cold();
+        if HAS_TILT && !self.upper.direction().is_general() {
+            let upper = self.upper;
+            return self.confirm(&upper);
         }
         Ok(())
     }
 
+    /// Confirms a plane whose direction is not tilted: evaluates the tilted direction, unless the tolerance allows a tilt,
+    /// because the plane was then chosen beside a tilted one.
     #[cold]
     #[inline(never)]
-    fn confirm_upper_cold(&mut self) -> Result<(), Fault> {
-        let upper = self.upper;
-        self.confirm(&upper)
-    }
-
-    /// Confirms a plane whose direction is not in general position: evaluates the tilted direction. If the two points
-    /// contradict each other, the query runs again with all directions tilted ([`Pair::run`](crate::query::Pair::run)).
-    ///
-    /// # Errors
-    /// [`Fault::NonFinite`].
-    #[cold]
-    #[inline(never)]
-    pub fn confirm(&mut self, exact: &SupportPlane) -> Result<(), Fault> {
-        // If the tolerance allows a tilt, the plane was chosen beside a tilted one; single precision has none.
-        if !HAS_TILT || self.has_tilt() {
-            return Ok(());
-        }
-        let tilted = self.evaluate_tilted(&exact.dir, MIN_TILT_RAD)?;
-        if !exact.is_consistent(&tilted, self.scale.tie_eps()) {
-            self.md.tilt_directions();
+    fn confirm(&mut self, exact: &SupportPlane) -> Result<(), Fault> {
+        if self.tilt_rule.tilt(&self.scale) == 0.0 {
+            let tilted = self.evaluate_tilted(&exact.dir, MIN_TILT_RAD)?;
+            self.compare(exact, &tilted);
         }
         Ok(())
+    }
+
+    /// Compares two planes. If their points contradict each other, all directions are tilted from here on, and the query
+    /// runs again ([`Pair::run`](crate::query::Pair::run)).
+    fn compare(&mut self, one: &SupportPlane, other: &SupportPlane) {
+        if !one.is_consistent(other, self.scale.tie_eps()) {
+            self.md.note_contradiction();
+            self.tilt_rule.least = MIN_TILT_RAD;
+        }
     }
 
     /// Evaluates the first direction, before there is a vertex set. Most queries of separated objects end here.
-    /// `is_general`: true if it is in general position. The caller adds the point to the set as entry 0, with the
-    /// direction of the upper bound.
+    /// The caller adds the point to the set as entry 0, with the direction of the upper bound.
     ///
     /// # Errors
     /// [`Stop::Separated`], [`Fault::NonFinite`].
     #[inline(always)]
-    pub fn evaluate_first(&mut self, n: &Vec3, is_general: bool) -> Result<SupportPoint, Stop> {
-        let plane = self.evaluate_plane(n, is_general, true)?;
+    pub fn evaluate_first(&mut self, dir: &Direction) -> Result<SupportPoint, Stop> {
+        let plane = self.evaluate_plane(&dir.n, dir.tilt, true)?;
         // Negated for NaN.
         if !self.scale.is_depth(plane.depth) {
             return Err(Stop::Separated(plane.direction()));
@@ -360,7 +315,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         set: &mut VertexSet<N>,
         n: &Vec3,
     ) -> Result<SupportSample, Stop> {
-        let plane = self.evaluate_plane(n, false, true)?;
+        let plane = self.evaluate_plane(n, 0.0, true)?;
         // Negated for NaN.
         if !self.scale.is_depth(plane.depth) {
             return Err(Stop::Separated(plane.direction()));
@@ -369,7 +324,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     }
 
     /// Evaluates like [`SupportQuery::evaluate`], for a query that continues after a separating axis: the upper
-    /// bound is then negative. `is_general`: as in [`SupportQuery::evaluate_first`].
+    /// bound is then negative. `tilt`: that of unit `n`, radians.
     ///
     /// # Errors
     /// [`Fault::NonFinite`].
@@ -378,9 +333,9 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         &mut self,
         set: &mut VertexSet<N>,
         n: &Vec3,
-        is_general: bool,
+        tilt: f64,
     ) -> Result<SupportSample, Fault> {
-        let plane = self.evaluate_plane(n, is_general, false)?;
+        let plane = self.evaluate_plane(n, tilt, false)?;
         Ok(self.store_sample(set, &plane))
     }
 
@@ -423,14 +378,27 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
     }
 
+    /// Returns the support plane of the set's entry `k`.
+    #[inline(always)]
+    pub fn plane<const N: usize>(&self, set: &VertexSet<N>, k: usize) -> SupportPlane {
+        let (dir, point) = (set.dir(k), set.point(VertexSet::<N>::pair_of_entry(k)));
+        SupportPlane {
+            dir,
+            depth: dir.dot(&point.v),
+            point,
+            tilt: self.tilt_rule.tilt(&self.scale),
+        }
+    }
+
     /// Returns whether a support function contradicts itself at the upper bound: a known difference is beyond the
-    /// support plane by more than rounding and [`CONTRADICTION_TOLERANCES`].
+    /// support plane by more than rounding and [`NEGLIGIBLE_GAPS`]: a lower one leaves the depth right. Answers are
+    /// insensitive: 0 to 4.
     #[inline(always)]
     pub fn is_inconsistent<const N: usize>(&self, set: &VertexSet<N>) -> bool {
         let SupportPlane { dir, depth, .. } = self.upper;
         let height = dir.dot(&set.farthest_vertex(&dir).w) - depth;
-        let tolerance = self.scale.tolerance(self.tolerance);
-        height > larger(self.scale.tie_eps(), CONTRADICTION_TOLERANCES * tolerance)
+        let tolerance = self.scale.tolerance(self.tilt_rule.tolerance);
+        height > larger(self.scale.tie_eps(), NEGLIGIBLE_GAPS * tolerance)
     }
 }
 
@@ -481,16 +449,16 @@ mod tests {
             let md = difference(ball(Vec3::zeros(), 1.0), other);
             let mut set = VertexSet::<4>::EMPTY;
             let mut query = SupportQuery::new(&md, None, 0.0);
-            let direction = |tilt| Direction { n: Vec3::x(), tilt };
-            let expected = Stop::Separated(direction(0.0));
-            let stop = query.evaluate(&mut set, &Vec3::x()).unwrap_err();
-            assert_eq!(stop, expected);
-            let stop = query.evaluate_first(&Vec3::x(), false).unwrap_err();
-            assert_eq!(stop, expected);
+            let dir = Direction::exact(Vec3::x());
+            let stop = query.evaluate(&mut set, &dir.n).unwrap_err();
+            assert_eq!(stop, Stop::Separated(dir));
+            let stop = query.evaluate_first(&dir).unwrap_err();
+            assert_eq!(stop, Stop::Separated(dir));
             // The direction of a state is known to be in general position.
-            let stop = query.evaluate_first(&Vec3::x(), true).unwrap_err();
-            let tilt = if HAS_TILT { MIN_TILT_RAD } else { 0.0 };
-            assert_eq!(stop, Stop::Separated(direction(tilt)));
+            let general = Direction::remembered(dir.n, true);
+            let stop = query.evaluate_first(&general).unwrap_err();
+            assert_eq!(stop, Stop::Separated(general));
+            assert_eq!(general.is_general(), HAS_TILT);
         }
     }
 
@@ -505,10 +473,7 @@ mod tests {
             let mut query = SupportQuery::new(&md, None, 1e-6);
             let mut set = VertexSet::<4>::EMPTY;
             let found = query.evaluate(&mut set, &Vec3::z());
-            let expected = Err(Stop::Separated(Direction {
-                n: Vec3::z(),
-                tilt: 0.0,
-            }));
+            let expected = Err(Stop::Separated(Direction::exact(Vec3::z())));
             assert!(if is_separated {
                 found == expected
             } else {
@@ -566,7 +531,7 @@ mod tests {
             if query.evaluate(&mut set, &Vec3::z()).is_ok() {
                 query.confirm_upper().unwrap();
             }
-            assert_eq!(md.least_tilt() > 0.0, wrong != 0.0);
+            assert_eq!(md.is_contradicted(), wrong != 0.0);
             assert_eq!(query.support_points(), 2);
             // Tilted from here on: the disc is as high as it is.
             if wrong != 0.0 {

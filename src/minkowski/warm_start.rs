@@ -10,14 +10,11 @@
 //! | `Separated` | the separating axis ([`crate::minkowski::separating_axis`]) | 0 | sphere radii or 0 |
 //! | `Overlap` | the direction of the upper bound, or a guess | the depth; 0 for a guess | sphere radii or 0 |
 //!
-//! A radius is 0 unless the sphere fits were confirmed. `is_general` tells whether the direction is in
-//! general position ([`crate::minkowski::general_position`]): the next query evaluates it as it is then, and tilts it
-//! otherwise.
+//! A radius is 0 unless the sphere fits were confirmed.
 
 use crate::math::{EPSILON, Vec3, ZERO, unit};
-use crate::minkowski::general_position::in_general_position;
 use crate::minkowski::support_query::Stop;
-use crate::types::Solution;
+use crate::types::{Direction, Solution};
 
 /// Result of the last query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,16 +31,14 @@ pub enum WarmKind {
 /// The warm start state of a pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WarmStart {
-    /// Direction of the last result, unit; zero in a cold state.
-    pub dir: Vec3,
+    /// Direction of the last result; zero in a cold state.
+    pub dir: Direction,
     /// The depth, metres; 0 for `Separated`.
     pub depth: f64,
     /// Radii of the sphere fits of obj1 and obj2, metres; 0 unless a prediction was confirmed.
     pub radius: [f64; 2],
     /// Result of the last query.
     pub kind: WarmKind,
-    /// True if the direction is in general position.
-    pub is_general: bool,
 }
 
 /// The largest error of the squared length of a unit vector. Measured on 50 million vectors that were normalised:
@@ -58,19 +53,17 @@ impl WarmStart {
 
     /// The state of a pair without an earlier query.
     pub const COLD: Self = Self {
-        dir: ZERO,
+        dir: Direction::exact(ZERO),
         depth: 0.0,
         radius: [0.0; 2],
         kind: WarmKind::Cold,
-        is_general: false,
     };
 
-    /// Makes the state of an overlap with this penetration direction, unit.
-    pub fn towards(dir: Vec3, is_general: bool) -> Self {
+    /// Makes the state of an overlap with this penetration direction.
+    pub fn towards(dir: Direction) -> Self {
         Self {
             dir,
             kind: WarmKind::Overlap,
-            is_general,
             ..Self::COLD
         }
     }
@@ -78,17 +71,16 @@ impl WarmStart {
     /// Makes a state from a guess of the penetration direction, of any length; cold if that is zero or not
     /// finite. The guess is tilted here, so that a query which is repeated from it does not turn.
     pub fn guess(dir: &Vec3) -> Self {
-        unit(dir).map_or(Self::COLD, |n| Self::towards(in_general_position(&n), true))
+        unit(dir).map_or(Self::COLD, |n| Self::towards(Direction::exact(n).general()))
     }
 
-    /// Makes the state of a pair that unit `dir` separates. `radius`: the radii of the sphere fits, metres.
-    pub fn separated(dir: Vec3, is_general: bool, radius: [f64; 2]) -> Self {
+    /// Makes the state of a pair that `dir` separates. `radius`: the radii of the sphere fits, metres.
+    pub fn separated(dir: Direction, radius: [f64; 2]) -> Self {
         Self {
             dir,
             depth: 0.0,
             radius,
             kind: WarmKind::Separated,
-            is_general,
         }
     }
 
@@ -96,18 +88,17 @@ impl WarmStart {
     #[inline(always)]
     pub fn note_separation<R>(&mut self, found: &Result<R, Stop>) {
         if let Err(Stop::Separated(axis)) = found {
-            *self = Self::separated(axis.n, axis.is_general(), self.radius);
+            *self = Self::separated(*axis, self.radius);
         }
     }
 
     /// Makes the state of a hit.
     pub fn hit(found: &Solution) -> Self {
         Self {
-            dir: found.dir,
+            dir: found.direction(),
             depth: found.depth,
             radius: found.radius,
             kind: WarmKind::Overlap,
-            is_general: found.is_general,
         }
     }
 
@@ -117,27 +108,21 @@ impl WarmStart {
     }
 
     /// Returns the separating axis; `None` if the objects were not separated.
-    pub fn separating_axis(&self) -> Option<Vec3> {
+    pub fn separating_axis(&self) -> Option<Direction> {
         (self.kind == WarmKind::Separated).then_some(self.dir)
-    }
-
-    /// Returns the direction of the last result; `None` for a cold state. If a pair was separated and now
-    /// overlaps, its separating axis is close to the normal of the new contact.
-    pub fn direction(&self) -> Option<Vec3> {
-        (self.kind != WarmKind::Cold).then_some(self.dir)
     }
 
     /// Converts the state of the pair (obj1, obj2) to one of (obj2, obj1). A cold state is unchanged.
     pub fn flip(&mut self) {
         if self.kind != WarmKind::Cold {
-            self.dir = -self.dir;
+            self.dir.n = -self.dir.n;
             self.radius.swap(0, 1);
         }
     }
 
     /// Packs the state into plain numbers. A cold state is all zeros.
     pub fn pack(&self) -> ([f64; Self::REALS], [u32; Self::WORDS]) {
-        let [x, y, z] = self.dir.into();
+        let [x, y, z] = self.dir.n.into();
         let [radius1, radius2] = self.radius;
         let kind = match self.kind {
             WarmKind::Cold => 0,
@@ -145,7 +130,7 @@ impl WarmStart {
             WarmKind::Overlap => 2,
         };
         let reals = [x, y, z, self.depth, radius1, radius2];
-        (reals, [kind, self.is_general.into()])
+        (reals, [kind, self.dir.is_general().into()])
     }
 
     /// Unpacks a state; returns a cold one unless the kind is known, the direction unit, and the lengths such that
@@ -167,11 +152,10 @@ impl WarmStart {
             return Self::COLD;
         }
         Self {
-            dir,
+            dir: Direction::remembered(dir, general == 1),
             depth,
             radius: [radius1, radius2],
             kind,
-            is_general: general == 1,
         }
     }
 }
@@ -183,10 +167,10 @@ mod tests {
     #[test]
     fn packing_and_unpacking_preserves_a_state() {
         let state = WarmStart::hit(&Solution {
-            dir: Vec3::new(0.6, 0.0, -0.8),
+            normal: Vec3::new(0.6, 0.0, -0.8),
+            is_general: true,
             depth: 0.25,
             radius: [1.0, 0.5],
-            is_general: true,
             ..Solution::default()
         });
         let (reals, words) = state.pack();
@@ -194,7 +178,7 @@ mod tests {
         assert_eq!((again.pack(), again.kind), (state.pack(), state.kind));
         let mut flipped = again;
         flipped.flip();
-        assert_eq!((flipped.dir, flipped.radius), (-state.dir, [0.5, 1.0]));
+        assert_eq!((flipped.dir.n, flipped.radius), (-state.dir.n, [0.5, 1.0]));
         flipped.flip();
         assert_eq!(flipped.pack(), state.pack());
     }

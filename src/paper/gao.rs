@@ -33,13 +33,12 @@
 
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, tangents, unit};
-use crate::minkowski::general_position::{tilt_rad, tilted_in_plane};
+use crate::minkowski::general_position::TiltRule;
 use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::tolerance::Scale;
-use crate::minkowski::tuning::MIN_TILT_RAD;
 use crate::portal::choose_corner;
-use crate::types::{Settings, Solution, Status};
+use crate::types::{Direction, Settings, Solution, Status};
 
 /// The perturbation of a stationary direction, as tangents along two perpendicular vectors: 6 degrees in all, small
 /// enough to stay in the valley and large enough to find a slope. The two have no simple ratio, so that no symmetry of
@@ -65,12 +64,10 @@ pub fn penetration<A: SupportMap, B: SupportMap>(
         Some(m) => unit(&(start - m * m.dot(&start))).unwrap_or_else(|| perpendicular(&m)),
         None => start,
     };
+    // In a plane the caller has tilted it.
+    let Direction { tilt, .. } = Direction::remembered(start, plane_normal.is_some());
     let ray = SupportPlane {
-        tilt: if plane_normal.is_some() {
-            MIN_TILT_RAD
-        } else {
-            0.0
-        },
+        tilt,
         ..support_plane(md, start)?
     };
     let mut search = RaySearch {
@@ -165,7 +162,7 @@ fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Solution {
         normal: plane.dir,
         point1,
         point2,
-        is_general: plane.is_general(),
+        is_general: plane.direction().is_general(),
         ..Solution::default()
     }
 }
@@ -342,15 +339,18 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// Evaluates unit `n`, turned into general position within the plane with unit normal `m`; as it is if the tolerance
     /// allows no tilt, or only n may separate.
     fn tilted_plane(&mut self, n: Vec3, m: &Vec3) -> Result<SupportPlane, Fault> {
-        let tilt = tilt_rad(self.tolerance, &self.scale, 0.0);
-        let dir = tilted_in_plane(&n, m, tilt);
+        let rule = TiltRule {
+            tolerance: self.tolerance,
+            least: 0.0,
+        };
+        let dir = Direction::tilted_in_plane(&n, m, rule.tilt(&self.scale));
         let plane = SupportPlane {
-            tilt,
-            ..support_plane(self.md, dir)?
+            tilt: dir.tilt,
+            ..support_plane(self.md, dir.n)?
         };
         self.scale.note(&plane.point);
         let may_separate = !self.scale.is_depth(n.dot(&plane.point.v));
-        if may_separate && tilt > 0.0 && !is_separating(&plane) {
+        if may_separate && dir.is_general() && !is_separating(&plane) {
             let exact = support_plane(self.md, n)?;
             if exact.is_consistent(&plane, self.scale.tie_eps()) {
                 return Ok(exact);

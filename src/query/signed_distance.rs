@@ -77,23 +77,22 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         // Without a separating plane the overlap test decides, however close the bounds are.
         let is_at_limit = matches!(cores.status, Status::IterationLimit | Status::SupportLimit);
         if cores.is_inside || !is_at_limit && !(cores.lower >= -contact_eps) {
-            *state = WarmStart::towards(cores.normal, cores.is_general);
+            *state = WarmStart::towards(cores.normal);
             if let Some(hit) = self.depth(state, arena)? {
                 return Ok(with_margins(hit, [margin1, margin2]));
             }
             // The overlap test found no overlap. Use its axis, even if the support value there is positive within
             // rounding, and keep the witness points, which are rounded too.
             let normal = state.dir;
-            let h = normal.dot(&self.difference.support(&normal)?.v);
+            let h = normal.n.dot(&self.difference.support(&normal.n)?.v);
             contact_eps = 2.0 * larger(contact_eps, h.abs());
             (cores.lower, cores.normal, cores.iterations) = (-h, normal, 0);
-            cores.is_general = state.is_general;
             let is_met = cores.upper <= larger(contact_eps, self.settings.tolerance);
             cores.status = Status::Rounding.unless(is_met);
         }
         let tolerance = self.settings.tolerance;
         let found = separated_distance(&cores, contact_eps, tolerance, [margin1, margin2]);
-        *state = WarmStart::separated(cores.normal, cores.is_general, radius);
+        *state = WarmStart::separated(cores.normal, radius);
         Ok(found)
     }
 
@@ -132,10 +131,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_distance,
             max_samples: max_iterations,
         };
-        let axis = state.separating_axis();
-        let start = axis.unwrap_or_else(|| self.cold_start());
-        let is_general = axis.is_some() && state.is_general;
-        let cores = closest_points(&mut query, &mut fit, &start, is_general, &goal)?;
+        let start = self.start(state, state.separating_axis().is_some());
+        let cores = closest_points(&mut query, &mut fit, &start, &goal)?;
         Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
     }
 }
@@ -167,7 +164,7 @@ fn separated_distance(
     let along = if cores.upper > contact_eps {
         (cores.point2 - cores.point1) / cores.upper
     } else {
-        cores.normal
+        cores.normal.n
     };
     let (mut depth, mut depth_lower) = (margin - cores.lower, margin - cores.upper);
     // If the cores touch within rounding, further support points cannot improve the bounds.
@@ -182,13 +179,13 @@ fn separated_distance(
     Solution {
         depth,
         depth_lower: lesser(depth_lower, depth),
-        dir: cores.normal,
-        normal: cores.normal,
+        dir: cores.normal.n,
+        normal: cores.normal.n,
+        is_general: cores.normal.is_general(),
         point1: cores.point1 + along * margin1,
         point2: cores.point2 - along * margin2,
         iterations: cores.iterations,
         status,
-        is_general: cores.is_general,
         ..Solution::default()
     }
 }

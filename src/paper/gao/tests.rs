@@ -267,7 +267,6 @@ mod search {
 
 mod portal {
     use super::super::*;
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{
         Random, Rotation, Shape, corners, difference, ellipsoid, hull, placed,
     };
@@ -435,7 +434,6 @@ mod portal {
 /// The case n = 2.
 mod planar {
     use super::super::*;
-    use crate::minkowski::support_query::Direction;
     use crate::test_shapes::{Random, Rotation, difference, hull};
 
     const TAU: f64 = core::f64::consts::TAU as f64;
