@@ -94,9 +94,9 @@ CCD_EXPORT int ccdMPRIntersect(const void *obj1, const void *obj2, const ccd_t *
  * depth, dir, pos: as of ccdGJKPenetration.
  * Reads mpr_tolerance: depth exceeds the least depth by at most mpr_tolerance or 0.1 % of the
  * depth, the larger of the two. If 160 support points or max_iterations are used up first, as for
- * nearly concentric round objects, a local search follows and depth is an upper bound of the least
- * depth; ccdPenetration reports this case. Allocates nothing; uses at most 44 KB of stack on
- * x86-64.
+ * balls whose centers are closer than 7 % of the sum of their radii, a local search follows and
+ * depth is an upper bound of the least depth; ccdPenetration reports this case. Allocates nothing;
+ * uses at most 44 KB of stack on x86-64.
  * Returns 0 or -1, as ccdGJKPenetration does. */
 CCD_EXPORT int ccdMPRPenetration(const void *obj1, const void *obj2, const ccd_t *ccd,
                                  ccd_real_t *depth, ccd_vec3_t *dir, ccd_vec3_t *pos);

@@ -62,6 +62,39 @@ static void support_limit(const call_t *call)
           "%s: depth %g", call->name, (double)p->depth);
 }
 
+/* Balls whose centers are this part of the sum of their radii apart, in random directions: returns how many of 100 end at the
+ * support limit. */
+static int nearly_concentric(const call_t *call, double part, double tolerance)
+{
+    int limits = 0;
+    for (int i = 0; i < 100; i++) {
+        results_t results;
+        shape_t a = shape_sphere(1), b = shape_sphere(0.5);
+        const ccd_t ccd = query(tolerance);
+        ccd_vec3_t at;
+        do
+            at = random_vec3(1);
+        while (!(ccdVec3Len2(&at) > (ccd_real_t)0.01));
+        ccdVec3Normalize(&at);
+        shape_move(&b, 1.5 * part * (double)at.v[0], 1.5 * part * (double)at.v[1], 1.5 * part * (double)at.v[2]);
+        limits += status_of(call, &a, &b, &ccd, &results) == CCD_STATUS_SUPPORT_LIMIT;
+    }
+    return limits;
+}
+
+/* What <ccd/ccd.h> and <ccd/warm.h> call nearly concentric. */
+static void balls_from_which_on_proofs_end(void)
+{
+    static const struct { int call; double part, tolerance; int is_limit; } rows[] = {
+        {CALL_PENETRATION, 0.06, 1e-4, 1}, {CALL_PENETRATION, 0.08, 1e-4, 0}, {CALL_PENETRATION, 0.08, 1e-6, 0},
+        {CALL_PROVEN, 0.04, 1e-4, 1},      {CALL_PROVEN, 0.05, 1e-4, 0},      {CALL_PROVEN, 0.09, 1e-6, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const int limits = nearly_concentric(&call_table[rows[i].call], rows[i].part, rows[i].tolerance);
+        CHECK(limits == (rows[i].is_limit ? 100 : 0), "%s, %g of the radii apart, %g: %d of 100 at the limit",
+              call_table[rows[i].call].name, rows[i].part, rows[i].tolerance, limits);
+    }
+}
+
 /* At tolerance 0 the bounds often cannot meet: the ray is at a small angle to the face through which it leaves, and the
  * rounding of the face is divided by the sine. (In single precision they do: the library computes in double.) */
 static void rounding(void)
@@ -114,7 +147,9 @@ int main(void)
         for (int i = 0; i < 20 && call->number != CALL_ALONG; i++)
             inconsistent_support(call);
     }
-    if (sizeof(ccd_real_t) == sizeof(double))
+    if (sizeof(ccd_real_t) == sizeof(double)) {
+        balls_from_which_on_proofs_end();
         rounding();
+    }
     return checks_end();
 }

@@ -42,7 +42,9 @@ pub unsafe extern "C-unwind" fn ccdPenetrationLocal(
 /// `warm`: may be NULL. `want`: CCD_WANT_ flags.
 ///
 /// Reads epa_tolerance. Allocates only if the minimum is (nearly) not unique, as for coaxial
-/// cylinders and concentric spheres; the bounds may then not meet, and CCD_LIMIT is returned.
+/// cylinders and concentric spheres; the bounds may then not meet, and CCD_LIMIT is returned: for
+/// balls whose centers are closer than 5 % of the sum of their radii, at a tolerance of 1e-6 of the
+/// size 8 %.
 ///
 /// Returns CCD_HIT, CCD_LIMIT, CCD_MISS, CCD_BAD_INPUT or CCD_NO_MEMORY.
 #[unsafe(no_mangle)]
