@@ -8,7 +8,7 @@ use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
 use core::ops::Deref;
 
-/// What an outline encloses.
+/// The area that an outline encloses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Footprint {
     /// No area: the deepest point is the center of pressure.

@@ -31,7 +31,7 @@ use crate::minkowski::support::{Fault, SupportMap};
 /// Largest number of times that a tilt is lowered.
 const MAX_CHORDS: usize = 3;
 
-/// What decides whether a side matters.
+/// The rule by which a side matters.
 struct SideRule<'f, 'o> {
     /// None for the smaller object.
     face: Option<&'f FlatFace<'o>>,
@@ -43,7 +43,7 @@ struct SideRule<'f, 'o> {
     size: f64,
 }
 
-/// What may be beyond a side.
+/// The most that a side may hide.
 struct Level {
     /// The area of the largest triangle beyond a side whose ends are farthest along directions at an angle α, over the square
     /// of its length: tan(α / 2) / 4.

@@ -77,7 +77,7 @@ impl EpaLimits {
     }
 }
 
-/// What an expansion works on besides its buffers, which have three sizes.
+/// The parameters of an expansion besides its buffers, which have three sizes.
 pub struct Expansion<'e, 'm, A, B> {
     pub query: &'e mut SupportQuery<'m, A, B>,
     pub fit: &'e mut SphereFit,

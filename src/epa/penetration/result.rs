@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! What a portal or a polytope proves: steps 4, 6 and 7 of the global query.
+//! The proofs of a portal and of a polytope: steps 4, 6 and 7 of the global query.
 
 use crate::epa::buffers::SMALL_VERTICES;
 use crate::epa::direction::refine_direction;
