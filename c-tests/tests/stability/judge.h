@@ -222,7 +222,7 @@ static inline int is_unit(const double n[3]) { return fabs(sqrt(truth_dot3(n, n)
 
 enum {
     MPR_POINTS = 160,     /* support points after which a depth of MPR is only within TOL_MPR_CAPPED */
-    MINIMUM_POINTS = 320, /* the search limit, after which a minimum is given up: the compatible calls cannot report it */
+    MINIMUM_POINTS = 340, /* support points after which a minimum is given up: the compatible calls cannot report it */
     MOST_POINTS = 400     /* support points of any query at CCD_INIT's tolerance relative to the size */
 };
 
