@@ -17,7 +17,6 @@
 //! There are no classes of objects: a face, an edge and a corner are outlines of many corners, two and one; the sides of a
 //! curved outline cease to matter. T is the tilt at which a surface whose radius is the extent has a drop of one depth, and
 //! step 2 finds it for a flatter one. A known vertex is no corner: which vertices are known depends on the search before.
-//! Measured with known vertices in the support plane as corners: 106 mm off.
 
 use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::outwards;
