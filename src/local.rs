@@ -65,6 +65,11 @@ pub const MAX_WALK_POINTS: usize = 64;
 /// witness points that are not the depth apart.
 const EQUAL_TOLERANCES: f64 = 1.0 - NEGLIGIBLE_GAPS;
 
+/// The tilt of a ray that is found again with no new entry, radians: it is in the plane of an edge of its portal, so that the
+/// signs by which corners are replaced are rounding, and the face is one that it does not cross. Bodies of revolution on one
+/// axis have such rays.
+const STUCK_TILT_RAD: f64 = 1e-3 * CONFIRM_TILT_RAD;
+
 /// The next step of a walk.
 enum Step {
     /// Follow the ray along this unit vector.
@@ -173,6 +178,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 return Ok(self.upper_bound(status));
             }
             let tolerance = self.tolerance();
+            let known = self.set.len();
             let first = self.set.farthest_vertex(&ray);
             // The approximate length of the ray in D from the interior point.
             let length = (first.w - self.interior).dot(&ray);
@@ -194,6 +200,10 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 None => Step::End(Status::Rounding),
             };
             ray = match step {
+                // The same portal would be found again.
+                Step::Ray(next) if next == ray && self.set.len() == known => {
+                    Direction::tilted(&next, STUCK_TILT_RAD).n
+                }
                 Step::Ray(next) => next,
                 Step::End(status) => return Ok(self.upper_bound(status)),
                 Step::Face(face, plane) => {
@@ -891,6 +901,34 @@ mod tests {
             }
         }
         assert!(converged > 5, "{converged}");
+    }
+
+    /// Cones on one axis, walks from near their slanted sides: the rays are in the plane of an edge and the axis.
+    #[test]
+    fn cones_on_one_axis_end_in_a_local_minimum() {
+        let cone = |radius: f64, half: f64, z: f64| {
+            move |n: &Vec3| {
+                let r = n.x.hypot(n.y);
+                if half * n.z * 2.0 > radius * r {
+                    return Vec3::z() * (z + half);
+                }
+                // The middle of the base along the axis.
+                let rim = if r > 0.0 { radius / r } else { 0.0 };
+                Vec3::new(n.x * rim, n.y * rim, z - half)
+            }
+        };
+        let mut r = Random::new(31);
+        for round in 0..2000 {
+            let (one, two) = (r.within(0.3, 0.6), r.within(0.3, 0.6));
+            let heights = [r.within(0.6, 1.0), r.within(0.2, 0.4)];
+            let md = difference(cone(one, heights[0], 0.0), cone(two, heights[1], 0.01));
+            let side = Vec3::new(1.0, 0.0, 0.5 * one / heights[0]);
+            let turn = Rotation::from_axis_angle(&Vec3::z_axis(), r.within(0.0, 6.0));
+            let start = (turn * side + Vec3::z() * r.within(-1e-4, 1e-4)).normalize();
+            let hit = walk(&md, None, &start, &SETTINGS).0.unwrap();
+            assert_eq!(hit.status, Status::Converged, "{round}");
+            check(&md, &hit, &mut r);
+        }
     }
 
     /// A ball that has passed through a plate: along the normal of the side where it was there is a local minimum of
