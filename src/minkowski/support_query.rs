@@ -32,6 +32,7 @@ use crate::types::Direction;
 
 /// Reason why an evaluation of the support function ends the query.
 #[derive(Clone, Copy, Debug, PartialEq)]
+
 pub enum Stop {
     /// The objects are separated, or in contact within rounding: the direction is a separating axis.
     Separated(Direction),
@@ -174,24 +175,53 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         Ok(point)
     }
 
-    /// Evaluates unit `n` by the tilt rule; as it is if `tilt` is not 0, because the direction is that of a state then, and a
-    /// pair at rest must not turn by a tilt in each query. `confirms`: true to confirm a separating plane. The path that most
-    /// tolerances take is inlined. No [`Direction`], which would be stored for the other path: codegen, see README.
+    /// Evaluates unit `n` by the tilt rule and returns what `then` makes of the plane. `tilt`: not 0 for the direction of a state,
+    /// which is evaluated as it is, so that a pair at rest does not turn. `confirms`: true to confirm a separating plane.
+    /// The path that most tolerances take is inlined and ends in a `then` of its own: a plane that a function may have
+    /// returned, and a [`Direction`], would be stored for the other paths. Codegen, see README.
     #[inline(always)]
-    fn evaluate_plane(
+    fn evaluate_plane<T, E: From<Fault>>(
         &mut self,
         n: &Vec3,
         tilt: f64,
         confirms: bool,
-    ) -> Result<SupportPlane, Fault> {
+        then: impl FnOnce(&mut Self, &SupportPlane) -> Result<T, E>,
+    ) -> Result<T, E> {
         if tilt > 0.0 || !self.tilt_rule.allows_largest(&self.scale) {
-            return self.evaluate_with_tilt(n, tilt, confirms);
+            return self.continue_with_tilt(*n, tilt, confirms, then);
         }
         let plane = self.evaluate_tilted(n, MAX_TILT_RAD)?;
         if self.may_separate(n, &plane) {
-            return self.evaluate_untilted(*n, plane);
+            return self.continue_untilted(*n, plane, then);
         }
-        Ok(plane)
+        then(self, &plane)
+    }
+
+    /// Continues [`SupportQuery::evaluate_plane`] with any other tilt than the largest.
+    #[inline(never)]
+    fn continue_with_tilt<T, E: From<Fault>>(
+        &mut self,
+        n: Vec3,
+        tilt: f64,
+        confirms: bool,
+        then: impl FnOnce(&mut Self, &SupportPlane) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let plane = self.evaluate_with_tilt(&n, tilt, confirms)?;
+        then(self, &plane)
+    }
+
+    /// Continues [`SupportQuery::evaluate_plane`] after `tilted`, because unit `n` may separate. Takes both by value, so that the
+    /// caller need not store them before: codegen, see README.
+    #[cold]
+    #[inline(never)]
+    fn continue_untilted<T, E: From<Fault>>(
+        &mut self,
+        n: Vec3,
+        tilted: SupportPlane,
+        then: impl FnOnce(&mut Self, &SupportPlane) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let plane = self.evaluate_untilted(&n, tilted)?;
+        then(self, &plane)
     }
 
     /// Continues [`SupportQuery::evaluate_plane`] with any other tilt than the largest. With none, because the tolerance
@@ -209,7 +239,7 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         }
         let plane = self.evaluate_tilted(n, self.tilt_rule.tilt(&self.scale))?;
         if self.may_separate(n, &plane) {
-            return self.evaluate_untilted(*n, plane);
+            return self.evaluate_untilted(n, plane);
         }
         if !(plane.tilt > 0.0) {
             if self.upper.depth < f64::INFINITY {
@@ -245,12 +275,11 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         })
     }
 
-    /// Evaluates unit `n` as it is after `tilted`. Returns `tilted` if the two points contradict each other. Takes
-    /// `n` by value, so that the caller need not store it: codegen, see README.
+    /// Evaluates unit `n` as it is after `tilted`. Returns `tilted` if the two points contradict each other.
     #[cold]
     #[inline(never)]
-    fn evaluate_untilted(&mut self, n: Vec3, tilted: SupportPlane) -> Result<SupportPlane, Fault> {
-        let exact = self.evaluate_tilted(&n, 0.0)?;
+    fn evaluate_untilted(&mut self, n: &Vec3, tilted: SupportPlane) -> Result<SupportPlane, Fault> {
+        let exact = self.evaluate_tilted(n, 0.0)?;
         let is_consistent = exact.is_consistent(&tilted, self.scale.tie_eps());
         Ok(if is_consistent { exact } else { tilted })
     }
@@ -296,13 +325,14 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
     /// [`Stop::Separated`], [`Fault::NonFinite`].
     #[inline(always)]
     pub fn evaluate_first(&mut self, dir: &Direction) -> Result<SupportPoint, Stop> {
-        let plane = self.evaluate_plane(&dir.n, dir.tilt, true)?;
-        // Negated for NaN.
-        if !self.scale.is_depth(plane.depth) {
-            return Err(Stop::Separated(plane.direction()));
-        }
-        self.store_upper(&plane);
-        Ok(plane.point)
+        self.evaluate_plane(&dir.n, dir.tilt, true, |query, plane| {
+            // Negated for NaN.
+            if !query.scale.is_depth(plane.depth) {
+                return Err(Stop::Separated(plane.direction()));
+            }
+            query.store_upper(plane);
+            Ok(plane.point)
+        })
     }
 
     /// Evaluates unit `n` and adds the sample to the set, which must have room.
@@ -315,12 +345,13 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         set: &mut VertexSet<N>,
         n: &Vec3,
     ) -> Result<SupportSample, Stop> {
-        let plane = self.evaluate_plane(n, 0.0, true)?;
-        // Negated for NaN.
-        if !self.scale.is_depth(plane.depth) {
-            return Err(Stop::Separated(plane.direction()));
-        }
-        Ok(self.store_sample(set, &plane))
+        self.evaluate_plane(n, 0.0, true, |query, plane| {
+            // Negated for NaN.
+            if !query.scale.is_depth(plane.depth) {
+                return Err(Stop::Separated(plane.direction()));
+            }
+            Ok(query.store_sample(set, plane))
+        })
     }
 
     /// Evaluates like [`SupportQuery::evaluate`], for a query that continues after a separating axis: the upper
@@ -335,8 +366,9 @@ impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
         n: &Vec3,
         tilt: f64,
     ) -> Result<SupportSample, Fault> {
-        let plane = self.evaluate_plane(n, tilt, false)?;
-        Ok(self.store_sample(set, &plane))
+        self.evaluate_plane(n, tilt, false, |query, plane| {
+            Ok(query.store_sample(set, plane))
+        })
     }
 
     /// Adds a sample to the set, and stores its support value if it is the least.
