@@ -56,6 +56,8 @@ fi
 expect "/libwarmccd-fcl.so$" warmccd run --signed-distance grep libwarmccd /proc/self/maps
 expect "^signed queries 3000 wrong 0" warmccd run --signed-distance python "$program" signed
 expect "No such file" warmccd run ./missing
+pip install -q --target "a;folder" "$wheel"
+expect "^warmccd: .*/a;folder/warmccd/lib: no program can be run" env PYTHONPATH="a;folder" python -m warmccd run true
 for way in "" --swap; do
     for text in "libccd: .*/python_fcl.libs/libccd-" "^ccdMPRPenetration  *2,002 " "^this library  *0  *0  *0  *0  *0 "; do
         # shellcheck disable=SC2086

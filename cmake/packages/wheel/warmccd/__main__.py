@@ -16,9 +16,13 @@ _HERE = pathlib.Path(__file__).resolve().parent
 def _run(arguments: argparse.Namespace) -> "list[str]":
     """Returns the program's command, and sets the environment in which it runs on this library."""
     preloaded = ["libwarmccd-middle.so"] * arguments.middle + ["libccd.so.2"] + ["libwarmccd-fcl.so"] * arguments.signed_distance
+    folder = str(_HERE / "lib")
+    # Elsewhere ld.so may find the system's libccd.so.2, and say nothing.
+    if ":" in folder or ";" in folder:
+        sys.exit(f"warmccd: {folder}: no program can be run on a library whose path has ':' or ';', at which ld.so splits it")
     # By their names: a path in LD_PRELOAD is split at its blanks.
     for variable, separator, values in [
-        ("LD_LIBRARY_PATH", ":", [str(_HERE / "lib")]),
+        ("LD_LIBRARY_PATH", ":", [folder]),
         ("LD_PRELOAD", " ", preloaded),
     ]:
         others = [value for value in [os.environ.get(variable)] if value]
