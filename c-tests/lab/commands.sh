@@ -194,6 +194,7 @@ cargo run --release -p lab --bin engines -- distance
 END
 run "charts and recorded costs" "" "" <<'END'
 cargo bench -p lab -- charts
+cargo bench -p lab -- local
 cargo bench -p lab -- paper
 cargo bench -p lab -- redraw
 cargo bench -p lab -- engines

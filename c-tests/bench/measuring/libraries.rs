@@ -25,7 +25,7 @@ const RTLD_DEEPBIND: c_int = 8;
 /// A state that is cold.
 pub const COLD: ccd_warm_t = ccd_warm_t { reals: [0.0; CCD_WARM_REALS as usize], words: [0; 2] };
 
-type SupportFn = unsafe extern "C-unwind" fn(*const c_void, *const ccd_vec3_t, *mut ccd_vec3_t);
+pub type SupportFn = unsafe extern "C-unwind" fn(*const c_void, *const ccd_vec3_t, *mut ccd_vec3_t);
 type CenterFn = unsafe extern "C-unwind" fn(*const c_void, *mut ccd_vec3_t);
 
 /// The functions of `callbacks.c`.

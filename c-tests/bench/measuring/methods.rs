@@ -154,12 +154,12 @@ pub fn select<'a>(libraries: &'a Libraries, list: &[(&str, Start, f64)]) -> Vec<
     let method = |&(name, start, tolerance): &(&str, Start, f64)| {
         let call = find_call(libraries, Entry::find(name));
         let settings = libraries.settings(Entry::find(name).is_ours(), tolerance);
-        Method::new(name, start, Some(tolerance), run_call(libraries, call, start, settings))
+        Method::new(name, start, Some(tolerance), run_call(libraries.ours.ccdWarmGuess, call, start, settings))
     };
     list.iter().map(method).collect()
 }
 
-type Object = *const c_void;
+pub type Object = *const c_void;
 type Ccd = *const ccd_t;
 type Point = *mut ccd_vec3_t;
 type Warm = *mut ccd_warm_t;
@@ -185,10 +185,11 @@ fn yes_no_call(f: unsafe extern "C-unwind" fn(Object, Object, Ccd) -> c_int) -> 
     Box::new(move |pair, ccd, _, _| unsafe { f(pair.a, pair.b, ccd) } - 1)
 }
 
+/// The type of `ccdPenetration`.
+pub type Full = unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, c_uint, *mut ccd_penetration_t) -> c_int;
+
 /// Returns a call with the interface of `ccdPenetration`.
-fn full_call(
-    f: unsafe extern "C-unwind" fn(Object, Object, Ccd, Warm, c_uint, *mut ccd_penetration_t) -> c_int,
-) -> Call {
+pub fn full_call(f: Full) -> Call {
     // SAFETY: a query over the callbacks' own shapes.
     Box::new(move |pair, ccd, warm, out| unsafe { f(pair.a, pair.b, ccd, warm, CCD_WANT_POINTS, out) })
 }
@@ -227,14 +228,16 @@ fn find_call(libraries: &Libraries, entry: &Entry) -> Call {
     }
 }
 
-/// Runs a library's call. Every guess is a fresh state, `Warm` one state a motion.
-pub fn run_call(libraries: &Libraries, call: Call, start: Start, settings: ccd_t) -> Query<'static> {
-    let ours = libraries.ours;
+/// The type of `ccdWarmGuess`.
+pub type Guess = unsafe extern "C-unwind" fn(Warm, *const ccd_vec3_t);
+
+/// Runs a library's call. Every guess is a fresh state, which `guess` makes, `Warm` one state a motion.
+pub fn run_call(guess: Guess, call: Call, start: Start, settings: ccd_t) -> Query<'static> {
     let mut state = COLD;
     Box::new(move |pair| {
         if let Some(v) = start.guess(&pair.truth) {
             // SAFETY: a state and a direction.
-            unsafe { ours.ccdWarmGuess(&mut state, &ccd_vec3_t { v }) };
+            unsafe { guess(&mut state, &ccd_vec3_t { v }) };
         } else if start != Start::Warm || pair.frame == 0 {
             state = COLD;
         }

@@ -43,7 +43,7 @@ pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row>
 }
 
 /// A nanometre and a microradian are exact for every use; the truth is known to 0.2 nm.
-const ERROR: Axis = Axis {
+pub const ERROR: Axis = Axis {
     title: "mean error of the depth",
     unit: Unit::Prefixed("m"),
     value: |row| Some(row.mean_error),

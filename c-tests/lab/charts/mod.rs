@@ -9,6 +9,7 @@ pub mod coherence;
 pub mod engines;
 pub mod figure;
 pub mod front;
+pub mod local;
 pub mod peers;
 pub mod results;
 pub mod times;
@@ -25,6 +26,8 @@ pub const OUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../bench/charts");
 /// Names of the figures in their folder: speed against accuracy, and motions by step.
 const FIGURES: &str = "accuracy.csv";
 const MOTIONS: &str = "coherence.csv";
+/// That of local searches at equal errors.
+const LOCAL: &str = "local.csv";
 /// That of other engines on recorded contacts.
 pub const ENGINES: &str = "engines.csv";
 
@@ -55,7 +58,9 @@ pub fn redraw(out: &Path) {
     // Always of the committed figures: `engines` measures them.
     let (machine_of_engines, engines) = csv::read(&Path::new(OUT).join(ENGINES));
     front::draw(&out.join("front.svg"), &machine_of_engines, &engines);
-    results::write(out, &machine, &rows, &csv::read(&out.join(MOTIONS)).1);
+    let (machine_of_local, local) = csv::read(&out.join(LOCAL));
+    local::draw(&out.join("local.svg"), &machine_of_local, &local);
+    results::write(out, &machine, &rows, &csv::read(&out.join(MOTIONS)).1, &local);
 }
 
 /// Measures and draws; `is_quick`: fewer poses, tolerances and repetitions, two minutes.
@@ -67,5 +72,6 @@ pub fn run(out: &Path, is_quick: bool) {
     std::fs::create_dir_all(out).expect("the folder for the charts");
     csv::write(&out.join(FIGURES), &libraries.machine, &accuracy::measure(&libraries, &peers, is_quick));
     csv::write(&out.join(MOTIONS), &libraries.machine, &coherence::measure(&libraries, is_quick));
+    csv::write(&out.join(LOCAL), &libraries.machine, &local::measure(&libraries, is_quick));
     redraw(out);
 }

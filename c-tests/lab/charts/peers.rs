@@ -108,7 +108,7 @@ impl Peers {
     pub fn methods<'a>(&self, libraries: &'a Libraries) -> Vec<Method<'a>> {
         let compiled = self.found.iter().map(|&(name, tolerance, query)| {
             let settings = libraries.settings(false, tolerance.unwrap_or(1e-6));
-            let query = run_call(libraries, depth_call(query, true), Start::None, settings);
+            let query = run_call(libraries.ours.ccdWarmGuess, depth_call(query, true), Start::None, settings);
             Method::new(name, Start::None, tolerance, query)
         });
         compiled.chain([parry(libraries)]).collect()

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::coherence;
+use super::{coherence, local};
 use crate::harness;
 use crate::measuring::csv;
 use crate::measuring::ledger::{self, Cost};
@@ -153,8 +153,9 @@ fn instructions_by_depth(costs: &[Cost]) -> String {
     markdown(&format!("pair|method|{}", DEPTHS.join("|")), lines)
 }
 
-/// Writes the page's tables between their marks: of these rows, of those of motions, and of the recorded costs.
-pub fn write(out: &Path, machine: &str, rows: &[Row], motions: &[Row]) {
+/// Writes the page's tables between their marks: of these rows, of those of motions and of local searches,
+/// and of the recorded costs.
+pub fn write(out: &Path, machine: &str, rows: &[Row], motions: &[Row], local: &[Row]) {
     let (_, costs) = csv::read::<Cost>(&ledger::file());
     let tables = [
         ("FOUND", found(rows)),
@@ -162,6 +163,7 @@ pub fn write(out: &Path, machine: &str, rows: &[Row], motions: &[Row]) {
         ("DIRECTIONS", directions(rows)),
         ("COHERENCE", coherence(motions)),
         ("JITTER", jitter(motions)),
+        ("LOCAL", local::table(local)),
         ("INSTRUCTIONS", instructions(&costs)),
         ("DEPTHS", instructions_by_depth(&costs)),
     ];

@@ -15,7 +15,9 @@ fn quick_charts_are_whole_and_sound() {
     let motions = read("coherence.csv");
     assert_eq!(motions.len(), 18 * 10);
     assert!(motions.iter().all(|row| row.jitter.is_some() && row.direction_rms.is_some()));
-    let rows = [read("accuracy.csv"), motions].concat();
+    let local = read("local.csv");
+    assert_eq!(local.len(), 11 * 2 * 2 * 4);
+    let rows = [read("accuracy.csv"), motions, local].concat();
     assert!(rows.len() > 500, "{} rows", rows.len());
     for row in &rows {
         let numbers =
@@ -26,7 +28,7 @@ fn quick_charts_are_whole_and_sound() {
             assert!(row.missed == 0.0 && row.shallow == 0.0, "{row:?}");
         }
     }
-    for name in ["accuracy", "accuracy_supports", "accuracy_time", "frames_supports", "frames_time", "front"] {
+    for name in ["accuracy", "accuracy_supports", "accuracy_time", "frames_supports", "frames_time", "front", "local"] {
         let path = out.path().join(name).with_extension("svg");
         let picture = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"), "{}", path.display());

@@ -17,12 +17,18 @@
 //! Outputs: |q| and the ray's direction. The published code evaluates three support points again for its witness points, which
 //! is left out here. This library's own implementation, which returns the portal's normal and its support value and makes
 //! every portal anew, is `src/paper/gao.rs`.
+//!
+//! It is called as a library is: through a pointer to a C function with the arguments of `ccdPenetrationLocal`.
+
+use std::ffi::{c_int, c_uint};
+use std::hint::black_box;
 
 use nalgebra::Vector3;
+use warmccd_bindings::libccd::{ccd_t, ccd_vec3_t};
+use warmccd_bindings::warmccd::{CCD_HIT, CCD_MISS, ccd_penetration_t, ccd_warm_t};
 
-use crate::measuring::libraries::{Callbacks, Libraries};
-use crate::measuring::methods::{Answer, Method, Start};
-use crate::measuring::scene::Pair;
+use crate::measuring::libraries::{Libraries, SupportFn};
+use crate::measuring::methods::{Full, Method, Object, Start, full_call, run_call};
 
 type V = Vector3<f64>;
 type Portal = [V; 3];
@@ -31,19 +37,22 @@ const MAX_ITERATIONS: usize = 1000;
 /// A change of the unit direction that ends Algorithm 3.
 const SAME_DIRECTION: f64 = 1e-3;
 
-/// D of a pair by its callbacks.
-struct Difference<'a> {
-    callbacks: Callbacks,
-    pair: &'a Pair,
+/// D of two objects by their callbacks.
+struct Difference {
+    objects: [(Object, SupportFn); 2],
 }
 
-impl Difference<'_> {
+impl Difference {
     /// Returns a direction as a unit vector, and the support point along it.
     fn support(&self, dir: V) -> (V, V) {
         let n = dir.normalize();
-        let [a, b] =
-            [(self.pair.a, n), (self.pair.b, -n)].map(|(shape, n)| self.callbacks.support_point(shape, n.into()));
-        (n, V::from(a) - V::from(b))
+        let point = |(object, support): (Object, SupportFn), n: V| {
+            let mut out = ccd_vec3_t { v: [0.0; 3] };
+            // SAFETY: an object with its callback, a direction and room for a point.
+            unsafe { support(object, &ccd_vec3_t { v: n.into() }, &mut out) };
+            V::from(out.v)
+        };
+        (n, point(self.objects[0], n) - point(self.objects[1], -n))
     }
 }
 
@@ -168,19 +177,55 @@ fn penetration(md: &Difference, start: V, tolerance: f64, has_shortcut: bool, ke
     None
 }
 
-/// Returns Algorithm 4/5, the same with new portals, or Algorithm 3, by name. Warm, it starts from the last direction of the
-/// motion.
-pub fn method(libraries: &Libraries, name: &'static str, start: Start, tolerance: f64) -> Method<'static> {
-    let (has_shortcut, keeps_portal) = (name != super::ALGORITHM_3, name != super::NEW_PORTALS);
-    let callbacks = libraries.callbacks;
-    let mut last: Option<V> = None;
-    let query = move |pair: &Pair| {
-        let memory = last.filter(|_| start == Start::Warm && pair.frame > 0);
-        let guess = start.guess(&pair.truth).map(V::from).or(memory).unwrap_or_else(|| pair.truth.cold.into());
-        let md = Difference { callbacks, pair };
-        let (depth, dir) = penetration(&md, guess, tolerance, has_shortcut, keeps_portal)?;
-        last = Some(dir);
-        Some(Answer { depth, dir: dir.into() })
+/// Computes a local minimum with the arguments of `ccdPenetrationLocal`, flags and witness points excepted. The state holds the
+/// last direction, in which the search starts; a cold one is zero, and the search starts along the line of the centers.
+unsafe extern "C-unwind" fn called<const HAS_SHORTCUT: bool, const KEEPS_PORTAL: bool>(
+    obj1: Object,
+    obj2: Object,
+    ccd: *const ccd_t,
+    warm: *mut ccd_warm_t,
+    _want: c_uint,
+    out: *mut ccd_penetration_t,
+) -> c_int {
+    // SAFETY: the settings, the state and the result of a query of `run_call`, which outlive it; callbacks of the objects.
+    let (ccd, warm, out) = unsafe { (&*ccd, &mut *warm, &mut *out) };
+    let (Some(support1), Some(support2)) = (ccd.support1, ccd.support2) else { return CCD_MISS };
+    let mut start = V::from_column_slice(&warm.reals[..3]);
+    if start == V::zeros() {
+        let centers = [(obj1, ccd.center1), (obj2, ccd.center2)].map(|(object, center)| {
+            let mut point = ccd_vec3_t { v: [0.0; 3] };
+            if let Some(center) = center {
+                // SAFETY: as above.
+                unsafe { center(object, &mut point) };
+            }
+            V::from(point.v)
+        });
+        start = (centers[1] - centers[0]).normalize();
+    }
+    let md = Difference { objects: [(obj1, support1), (obj2, support2)] };
+    let Some((depth, dir)) = penetration(&md, start, ccd.mpr_tolerance, HAS_SHORTCUT, KEEPS_PORTAL) else {
+        return CCD_MISS;
     };
-    Method::new(name, start, Some(tolerance), Box::new(query))
+    warm.reals[..3].copy_from_slice(dir.as_slice());
+    (out.depth, out.dir.v) = (depth, dir.into());
+    CCD_HIT as c_int
+}
+
+/// Makes a state that starts from a unit direction.
+unsafe extern "C-unwind" fn guess(warm: *mut ccd_warm_t, dir: *const ccd_vec3_t) {
+    // SAFETY: a state and a direction.
+    unsafe { (&mut (*warm).reals)[..3].copy_from_slice(&(*dir).v) };
+}
+
+/// Returns Algorithm 4/5, the same with new portals, or Algorithm 3, by name.
+pub fn method(libraries: &Libraries, name: &'static str, start: Start, tolerance: f64) -> Method<'static> {
+    let function: Full = match name {
+        super::ALGORITHM_3 => called::<false, true>,
+        super::NEW_PORTALS => called::<true, false>,
+        _ => called::<true, true>,
+    };
+    let settings = libraries.settings(true, tolerance);
+    // The compiler must not see which function it is.
+    let query = run_call(guess, full_call(black_box(function)), start, settings);
+    Method::new(name, start, Some(tolerance), query)
 }
