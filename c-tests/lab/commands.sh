@@ -195,6 +195,7 @@ END
 run "charts and recorded costs" "" "" <<'END'
 cargo bench -p lab -- charts
 cargo bench -p lab -- local
+cargo bench -p lab -- ratios
 cargo bench -p lab -- paper
 cargo bench -p lab -- redraw
 cargo bench -p lab -- engines

@@ -27,6 +27,7 @@ usage: cargo bench -p lab -- COMMAND
   paper             the tables and figures of W. Gao's paper, as CSV and SVG, and their page
   charts --quick, paper --quick   the same of fewer poses, in target/quick, beside what is published
   local             the local search beside the published method at equal errors: prints the charts' table
+  ratios            times over libccd's by kind and depth of the pairs, misses too: prints them
   redraw            the pictures and their pages from the CSV files that are there
   record            the support counts, errors, instructions and mispredictions that a test judges
   engines           this library beside other engines on recorded contacts; downloads what it can";
@@ -42,6 +43,7 @@ fn main() {
         ["paper"] => paper::run(Path::new(paper::OUT), false),
         ["paper", "--quick"] => paper::run(&quick("paper"), true),
         ["local"] => charts::local::run(),
+        ["ratios"] => charts::ratios::run(),
         ["redraw"] => {
             charts::redraw(out);
             paper::redraw(Path::new(paper::OUT));

@@ -11,6 +11,7 @@ pub mod figure;
 pub mod front;
 pub mod local;
 pub mod peers;
+pub mod ratios;
 pub mod results;
 pub mod times;
 

@@ -60,6 +60,17 @@ fn times(scene: &Scene, methods: &mut [Method], repetitions: usize) -> Vec<f64> 
     passes.into_iter().filter_map(mean_of_medians).collect()
 }
 
+/// Returns the time of a method over a scene divided by another's: the median over repetitions in which both take turns. One
+/// time a pass: reading the clock takes as long as a few misses.
+pub fn ratio(scene: &Scene, method: &mut Method, other: &mut Method, repetitions: usize) -> f64 {
+    let time = |method: &mut Method| {
+        let begin = thread_nanoseconds();
+        scene.pairs.iter().for_each(|pair| _ = black_box((method.query)(pair)));
+        thread_nanoseconds() - begin
+    };
+    median((0..repetitions).map(|_| time(method) / time(other)).collect())
+}
+
 /// Returns time, ns, and number of the queries of every chunk; a warm method's first frames are not timed.
 fn pass(scene: &Scene, method: &mut Method) -> Vec<(f64, usize)> {
     let (chunks, num_untimed): (Vec<&[Pair]>, _) = match method.is_warm() {
