@@ -285,11 +285,20 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     /// Finds a local minimum of the depth by the local search ([`crate::local`]). If that ends without one,
     /// runs the global search from the direction of the upper bound.
     fn local(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
-        let hit = self.descend(state)?;
-        if hit.status == Status::Converged {
-            return Ok(hit);
+        // One variable, not unpacked: codegen, see README.
+        let mut found = self.descend(state);
+        if let Ok(hit) = &found {
+            if hit.status != Status::Converged {
+                found = self.search_globally(hit.iterations, state);
+            }
         }
-        let iterations = hit.iterations;
+        found
+    }
+
+    /// Continues [`Pair::local`], whose walk took so many iterations, by the global search from the state.
+    #[cold]
+    #[inline(never)]
+    fn search_globally(&self, iterations: u64, state: &mut WarmStart) -> Result<Solution, Stop> {
         let mut limits = EpaLimits::new(&self.settings, 0.0, MAX_DEFAULT_POINTS);
         limits.max_iterations -= iterations;
         let mut hit = self.minimize(self.centers.as_ref(), &limits, true, state, None)?;
@@ -308,12 +317,17 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        let mut hit = local::penetration(&mut query, &mut set, &start, &self.settings)?;
-        *state = WarmStart::hit(&hit);
-        if hit.status == Status::Converged && self.settings.pos {
-            hit.pos = self.contact_position(&set, &hit, &query.scale)?;
+        let mut found = local::penetration(&mut query, &mut set, &start, &self.settings);
+        if let Ok(hit) = &mut found {
+            *state = WarmStart::hit(hit);
+            if hit.status == Status::Converged && self.settings.pos {
+                match self.contact_position(&set, hit, &query.scale) {
+                    Ok(pos) => hit.pos = pos,
+                    Err(fault) => found = Err(fault.into()),
+                }
+            }
         }
-        Ok(hit)
+        found
     }
 
     /// Improves an uncertified depth by a local search from its direction, to a hundredth of the tolerance. If the
