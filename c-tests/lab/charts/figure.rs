@@ -65,6 +65,7 @@ const MOST_LINES: usize = 8;
 /// Returns the name of a method in pictures, with its start.
 fn name(row: &Row) -> String {
     let method = match &*row.method {
+        "ccdMPRPenetration, pos" => "warmccd ccdMPRPenetration, pos",
         "ccdPenetration" => "warmccd ccdPenetration",
         "libccd ccdMPRPenetration" => "libccd MPR",
         "libccd ccdGJKPenetration" => "libccd EPA",
@@ -111,7 +112,7 @@ fn style(row: &Row) -> Style {
     const ORANGE: RGBColor = RGBColor(230, 159, 0);
     const GREY: RGBColor = RGBColor(110, 110, 110);
     let (color, dashes, mark) = match &*row.method {
-        "ccdMPRPenetration" => (BLUE, None, Mark::Circle),
+        "ccdMPRPenetration" | "ccdMPRPenetration, pos" => (BLUE, None, Mark::Circle),
         "ccdMPRPenetrationWarm" => (BLUE, Some((9, 4)), Mark::Square),
         "ccdPenetrationProven" | "ccdPenetration" | "ccdGJKPenetration" => (NAVY, None, Mark::Triangle),
         method if method.starts_with("ccdPenetrationLocal") => (SKY, None, Mark::Square),
