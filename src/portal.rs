@@ -19,8 +19,7 @@
 //! so that the portal of a shallow contact is small and close to the minimum; where the upper bound is large beside the
 //! length of the ray, that perpendicular itself ([`FAR_UPPER_REL`]). If v1 is near the ray, the portal is a
 //! *ring*: the support points of three directions around one that the caller chooses ([`NearRay`]). A caller whose ray
-//! must cross the portal gets perpendicular directions there. The polytope of a deep overlap begins with a wide [`ring`]
-//! around the ray and no discovery.
+//! must cross the portal gets perpendicular directions there.
 //!
 //! Outputs. `Ok(None)` of [`discover`]: D is flat, vertices tie, or the set is full. The caller needs another start, such
 //! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
@@ -39,9 +38,7 @@ use crate::trace;
 /// the surface of D, and few loops take forty; later steps only change rounding errors. Insensitive: 24 to 100.
 pub const MAX_STEPS: u32 = 100;
 
-/// The tangent of the angle between the ray and the directions of the widest ring: 60°. Measured on deep overlaps:
-/// perpendicular directions (1.41) take up to 2 % more instructions. With these in single precision, and with those of a
-/// regular tetrahedron (2.83), the position of a cylinder that slides on a plate jumps (test `continuity`).
+/// The tangent of the angle between the axis and the directions of the widest ring: 60°.
 pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 
 /// The upper bound, in sizes of D, below which a contact is *shallow*: its portal is near the minimum, and is refined further

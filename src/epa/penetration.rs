@@ -8,8 +8,7 @@
 //! 2. *Interior point*: the difference of the centers if they are given; else the middle of the
 //!    support points along the ray and opposite to it, which is always in D.
 //! 3. *Portal*: discovery and refinement ([`crate::portal`]); if the vertex of the first direction is near the ray, as
-//!    that of a warm state is, a ring of three support points around the direction of the upper bound; if the center is near
-//!    the origin, a wide ring around the ray.
+//!    that of a warm state is, a ring of three support points around the direction of the upper bound.
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.

@@ -22,10 +22,6 @@ const WIDE_RING_DEPTHS: f64 = 3.0;
 /// The distance from the ray, in radii of the ring, below which a vertex counts as near it and a ring is evaluated. Measured:
 /// with 1 boxes take 15 % and hulls 7 to 26 % more support points; below 0.25 the counts change by less than 1 %.
 const NEAR_RING_REL: f64 = 0.25;
-/// The distance of the center from the origin, in sizes of D, up to which it can be close to the origin. Measured: with 0.4,
-/// boxes that slide on a plate take 5.4 support points in place of 3.6; with 0.25, bodies on a plate of 20 m 3 % more, with 0.1
-/// 4 % fewer; other sets differ by at most 1 %.
-const CENTRAL_REL: f64 = 0.2;
 /// The squared turn of the ray, radians, above which the new ray is evaluated too: 29 degrees. Measured: without that misses
 /// of `ccdGJKPenetration` take 5.6 support points in place of 4.3; from 6 degrees on hulls without centers take 4 to 7 % more.
 const MAX_RAY_TURN2: f64 = 0.25;
@@ -57,20 +53,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         Ok(opposite)
     }
 
-    /// Steps 3 and 5. Returns whether the center is close to the origin, and along unit `dir` closer than the upper bound: the polytope will
-    /// then reach all around the origin. The second alone is true of a body on a wide plate too, where `dir` is nearly
-    /// parallel to the plate.
-    #[inline(always)]
-    pub(super) fn is_central(&self, dir: &Vec3) -> bool {
-        let query = &*self.query;
-        let largest2 = CENTRAL_REL * CENTRAL_REL * query.scale.size2();
-        let center = self.request.center;
-        center.is_some_and(|center| {
-            -center.v.dot(dir) < query.upper.depth && center.v.norm_squared() < largest2
-        })
-    }
-
-    /// Step 3. Finds a portal of the ray and refines it; a wide ring if the center is close to the origin.
+    /// Step 3. Finds a portal of the ray and refines it.
     #[inline(always)]
     pub(super) fn find_portal<const N: usize>(
         &mut self,
@@ -78,13 +61,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         ray: &Vec3,
     ) -> Result<Option<Portal>, Stop> {
         let gap = self.allowed_gap();
-        let is_central = self.is_central(ray);
         let query = &mut *self.query;
-        if is_central {
-            if let Some(portal) = ring(query, set, ray, WIDEST_RING_TAN)? {
-                return Ok(Some(portal));
-            }
-        }
         let length = query.upper.depth - self.interior.v.dot(ray);
         // As wide as the gap allows, or as the ball that the tetrahedron of a shallow contact has to contain.
         let wide = lesser(WIDE_RING_DEPTHS * query.upper.depth, WIDE_RING_TAN * length);
@@ -126,14 +103,17 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         Ok(Some(portal))
     }
 
-    /// Step 5. Returns the fourth corner of the tetrahedron of the portal: the interior point; in place of a center close to the
-    /// origin, the support point opposite to the upper bound.
+    /// Step 5. Returns the fourth corner of the tetrahedron of the portal: the interior point; in place of a center that is closer
+    /// to the origin along the direction of the upper bound than that bound, the support point opposite to it: the polytope
+    /// will reach all around the origin.
     pub(super) fn find_apex(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
     ) -> Result<Vertex, Stop> {
         let dir = self.query.upper.dir;
-        if self.is_central(&dir) && !set.is_full() {
+        let center = self.request.center;
+        let is_central = center.is_some_and(|c| -c.v.dot(&dir) < self.query.upper.depth);
+        if is_central && !set.is_full() {
             return Ok(self.query.evaluate(set, &-dir)?.vertex());
         }
         Ok(Vertex {
