@@ -33,7 +33,8 @@ const ON_RECORDED: [Listed; 6] = [
 ];
 const AFTER_A_FRAME: [Listed; 1] = [("ccdMPRPenetrationWarm", Start::Warm, 1e-6)];
 const ON_SLIDING: [Listed; 2] = [("ccdMPRPenetrationWarm, pos", Start::Warm, 1e-6), AFTER_A_FRAME[0]];
-const ON_FLOORS: [Listed; 4] = [
+const ON_FLOORS: [Listed; 5] = [
+    ON_RECORDED[0],
     ON_RECORDED[1],
     ON_RECORDED[2],
     ("ccdMPRIntersect", Start::None, 1e-6),
