@@ -53,6 +53,33 @@ static size_t read_pair_set(const pair_set_t *set, bench_pose_t *pose)
     return pose ? (size_t)set->n : 0;
 }
 
+/* Writes the line of the centers. */
+static void centers_apart(bench_pose_t *pose)
+{
+    ccd_vec3_t center[2], d;
+    shape_center(pose->a, &center[0]);
+    shape_center(pose->b, &center[1]);
+    ccdVec3Sub2(&d, &center[1], &center[0]);
+    if (ccdVec3Len2(&d) > 0)
+        ccdVec3Normalize(&d);
+    else
+        ccdVec3Set(&d, 1, 0, 0);
+    memcpy(pose->truth.cold, d.v, sizeof d.v);
+}
+
+/* Writes a direction so many degrees from a normal, towards a vector that is not parallel to it. */
+static void guess(const double normal[3], const double towards[3], double degrees, double out[3])
+{
+    const double angle = degrees * 1.57079632679489661923 / 90, along = truth_dot3(normal, towards);
+    double side[3], length = 0;
+    for (int k = 0; k < 3; k++) {
+        side[k] = towards[k] - along * normal[k];
+        length += side[k] * side[k];
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = cos(angle) * normal[k] + sin(angle) / sqrt(length) * side[k];
+}
+
 static size_t read_recording(const recording_t *r, bench_pose_t *pose)
 {
     size_t k = 0;
@@ -61,17 +88,9 @@ static size_t read_recording(const recording_t *r, bench_pose_t *pose)
         recording_place(r, f, body);
         for (uint32_t i = 0; i < r->frame_pairs[f]; i++, k++, pose++) {
             const recording_pair_t *pair = &r->pair[k];
-            ccd_vec3_t center[2], d;
             *pose->a = body[pair->a];
             *pose->b = body[pair->b];
-            shape_center(pose->a, &center[0]);
-            shape_center(pose->b, &center[1]);
-            ccdVec3Sub2(&d, &center[1], &center[0]);
-            if (ccdVec3Len2(&d) > 0)
-                ccdVec3Normalize(&d);
-            else
-                ccdVec3Set(&d, 1, 0, 0);
-            memcpy(pose->truth.cold, d.v, sizeof d.v);
+            centers_apart(pose);
             pose->truth.depth = (pair->lower + pair->upper) / 2;
             pose->truth.gap = pair->upper - pair->lower;
             pose->motion = (size_t)pair->a * r->bodies + pair->b;
@@ -255,9 +274,15 @@ size_t bench_floor(int kind, double half, int is_above, size_t n, bench_pose_t *
     for (size_t k = 0; pose && verts && k < FRAMES * n; k++, pose++) {
         const size_t i = k / FRAMES, f = k % FRAMES;
         rng_t r = rng(101 + (uint64_t)kind, i);
+        double towards[3];
         floor_pair(&r, (floor_kind_t)kind, half, height, .01 * (double)f, verts + 3 * FLOOR_CORNERS * i, pose->a, pose->b,
                    pose->truth.normal);
         pose->truth.depth = -height;
+        rng_unit_vector(&r, towards);
+        guess(pose->truth.normal, towards, 5, pose->truth.init5);
+        guess(pose->truth.normal, towards, 25, pose->truth.init25);
+        guess(pose->truth.normal, towards, 45, pose->truth.init45);
+        centers_apart(pose);
         pose->motion = i;
         pose->frame = f;
     }

@@ -29,6 +29,10 @@ pub const DEPTHS: [&str; 5] = ["shallow", "medium", "deep", "near", "far"];
 /// Kinds of bodies on floors, in the order of `c-tests/harness/floor.h`.
 pub const FLOOR_KINDS: [&str; 3] = ["boxes", "round bodies", "hulls of 42 and 162 corners"];
 
+/// Names of the scenes of [`Scene::floors`], and their poses, as many as of a pair set.
+pub const FLOORS: [&str; 3] = ["boxes on a floor", "round bodies on a floor", "hulls on a floor"];
+const NUM_ON_FLOOR: usize = 500;
+
 /// Pairs of one kind.
 #[derive(Clone)]
 pub struct Scene {
@@ -68,7 +72,7 @@ impl Scene {
     }
 
     /// Makes motions of two frames of a body on a plate, by the half width of the plate, metres: 1 mm deep, or as much above
-    /// it. Guesses are missing.
+    /// it.
     pub fn floor(libraries: &Libraries, kind: usize, half: f64, is_above: bool, num_motions: usize) -> Self {
         let make = libraries.callbacks.floor;
         let index = kind.try_into().expect("a small number");
@@ -76,6 +80,15 @@ impl Scene {
         let pairs = Self::pairs(|poses| unsafe { make(index, half, is_above.into(), num_motions, poses) });
         let place = if is_above { "above" } else { "on" };
         Self { name: format!("{} {place} a plate of {half} m", FLOOR_KINDS[kind]), pairs }
+    }
+
+    /// Returns at most `limit` independent poses of every kind of body, 1 mm deep in plates of 20 m.
+    pub fn floors(libraries: &Libraries, limit: usize) -> [Self; 3] {
+        [0, 1, 2].map(|kind| {
+            let mut scene = Self::floor(libraries, kind, 20.0, false, limit.min(NUM_ON_FLOOR));
+            scene.pairs.retain(|pair| pair.frame == 0);
+            Self { name: FLOORS[kind].to_owned(), ..scene }
+        })
     }
 
     /// Returns the pairs of a motion's second frames, for queries without a memory.

@@ -11,15 +11,14 @@ use super::times;
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::{Start, select};
-use crate::measuring::recorded::{MOTIONS, RANDOM};
+use crate::measuring::recorded::MOTIONS;
 use crate::measuring::scene::Scene;
 use crate::paper::{ALGORITHM_4_5, published};
 
 pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row> {
     let (num_poses, repetitions, step) = if is_quick { (100, 3, 2) } else { (usize::MAX, 9, 1) };
-    let rows = |set: &&str| {
-        eprintln!("speed against accuracy: {set}");
-        let scene = Scene::load(libraries, set, num_poses);
+    let rows = |scene: Scene| {
+        eprintln!("speed against accuracy: {}", scene.name);
         let is_motion = scene.is_motion();
         let (local, proven) = if is_motion { (Start::Warm, Start::Warm) } else { (Start::Guess5, Start::None) };
         let (mut list, mut algorithm_4_5) = (Vec::new(), Vec::new());
@@ -39,7 +38,8 @@ pub fn measure(libraries: &Libraries, peers: &Peers, is_quick: bool) -> Vec<Row>
         methods.extend(peers.methods(libraries));
         times::runner(libraries, repetitions).rows(&scene, methods)
     };
-    [&RANDOM[..], &MOTIONS].concat().iter().flat_map(rows).collect()
+    let motions = MOTIONS.map(|set| Scene::load(libraries, set, num_poses));
+    super::scenes(libraries, num_poses).into_iter().chain(motions).flat_map(rows).collect()
 }
 
 /// A nanometre and a microradian are exact for every use; the truth is known to 0.2 nm.
@@ -94,7 +94,7 @@ pub fn draw(out: &Path, machine: &str, rows: &[Row]) {
     let main = MAIN.map(|set| panel(set, ERROR, TIME)).into();
     grid("accuracy.svg", "Time against the error of the depth: independent poses, guesses 5° off", main);
     for (sets, file, beside, what) in [
-        (&RANDOM[..], "accuracy", DIRECTION, "independent poses, guesses 5° off"),
+        (&super::sets()[..], "accuracy", DIRECTION, "independent poses, guesses 5° off"),
         (&MOTIONS, "frames", JITTER, "motions of 0.1° and 0.1 mm a frame"),
     ] {
         for (cost, name, y) in [("Time", "time", TIME), ("Support points", "supports", SUPPORTS)] {

@@ -12,7 +12,6 @@ use super::times;
 use crate::measuring::libraries::Libraries;
 use crate::measuring::measure::Row;
 use crate::measuring::methods::{Method, Start, select};
-use crate::measuring::recorded::RANDOM;
 use crate::measuring::scene::Scene;
 use crate::pages::markdown;
 use crate::paper::{ALGORITHM_4_5, published};
@@ -34,9 +33,9 @@ fn methods(libraries: &Libraries, start: Start, tolerance: f64) -> [Method<'_>; 
 
 pub fn measure(libraries: &Libraries, is_quick: bool) -> Vec<Row> {
     let (num_poses, repetitions, step) = if is_quick { (100, 3, 3) } else { (usize::MAX, 15, 1) };
-    let rows = |(set, start): (&str, Start)| {
-        eprintln!("local searches at equal errors: {set}");
-        let mut scene = Scene::load(libraries, set, num_poses);
+    let rows = |(scene, start): (&Scene, Start)| {
+        eprintln!("local searches at equal errors: {}", scene.name);
+        let mut scene = scene.clone();
         let mut methods: Vec<_> =
             (3..=12).step_by(step).flat_map(|k| methods(libraries, start, 10_f64.powi(-k))).collect();
         for method in &mut methods {
@@ -47,7 +46,8 @@ pub fn measure(libraries: &Libraries, is_quick: bool) -> Vec<Row> {
         }
         times::runner(libraries, repetitions).rows(&scene, methods)
     };
-    RANDOM.iter().flat_map(|set| STARTS.map(|start| (*set, start))).flat_map(rows).collect()
+    let scenes = super::scenes(libraries, num_poses);
+    scenes.iter().flat_map(|scene| STARTS.map(|start| (scene, start))).flat_map(rows).collect()
 }
 
 /// Returns time and support points at which a method reaches an error: at the first tolerance that does, or between it and
@@ -76,7 +76,7 @@ pub fn table(rows: &[Row]) -> String {
         let row = rows.iter().find(|row| (&*row.set, row.start) == (set, start));
         row.map_or("-".to_owned(), |row| row.queries.to_string())
     };
-    let lines = RANDOM.map(|set| {
+    let lines = super::sets().into_iter().map(|set| {
         let cells = STARTS.map(|start| [poses(set, start), cell(set, start, ERRORS[0]), cell(set, start, ERRORS[1])]);
         [vec![super::kind(set)], cells.concat()].concat()
     });
@@ -94,7 +94,7 @@ pub fn draw(path: &Path, machine: &str, rows: &[Row]) {
         super::short(machine),
     ];
     let title = "The local search and the published method: guesses 5° and 45° off";
-    figure::grid(path, title, 2, RANDOM.map(panel).into(), &notes).expect("a picture");
+    figure::grid(path, title, 2, super::sets().into_iter().map(panel).collect(), &notes).expect("a picture");
 }
 
 /// Measures, and prints the table alone.

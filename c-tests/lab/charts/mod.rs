@@ -19,6 +19,8 @@ use std::path::Path;
 
 use crate::measuring::csv;
 use crate::measuring::libraries::Libraries;
+use crate::measuring::recorded::RANDOM;
+use crate::measuring::scene::{FLOORS, Scene};
 use peers::Peers;
 
 /// Folder of the committed figures and pictures.
@@ -31,6 +33,17 @@ const MOTIONS: &str = "coherence.csv";
 const LOCAL: &str = "local.csv";
 /// That of other engines on recorded contacts.
 pub const ENGINES: &str = "engines.csv";
+
+/// Returns the names of all independent poses: pair sets, and bodies on floors.
+pub fn sets() -> Vec<&'static str> {
+    [&RANDOM[..], &FLOORS].concat()
+}
+
+/// Returns at most `limit` poses of each of them.
+pub fn scenes(libraries: &Libraries, limit: usize) -> Vec<Scene> {
+    let sets = RANDOM.map(|set| Scene::load(libraries, set, limit));
+    sets.into_iter().chain(Scene::floors(libraries, limit)).collect()
+}
 
 /// Returns the name of a pair set in words.
 pub fn kind(set: &str) -> String {

@@ -1,18 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Times of `ccdMPRPenetration` over libccd's, misses too: random pairs by kind and depth, and the recorded contacts. Identical
-//! code varies by a fifth from one build or machine to the next: no test judges these ratios, the ledger of costs is for that.
+//! Times of `ccdMPRPenetration` over libccd's, misses too: random pairs by kind and depth, bodies on and above floors, and the
+//! recorded contacts. Identical code varies by a fifth from one build or machine to the next: no test judges these ratios, the
+//! ledger of costs is for that.
 
 use super::times;
 use crate::measuring::libraries::Libraries;
 use crate::measuring::methods::{Start, select};
-use crate::measuring::scene::{DEPTHS, KINDS, Scene};
+use crate::measuring::scene::{DEPTHS, FLOOR_KINDS, KINDS, Scene};
 use crate::pages::markdown;
 
 const METHODS: [(&str, Start, f64); 2] =
     [("ccdMPRPenetration", Start::None, 1e-6), ("libccd ccdMPRPenetration", Start::None, 1e-6)];
-/// Random pairs of each kind and depth, more than a processor's predictor learns by heart.
+/// Pairs of each kind and depth, more than a processor's predictor learns by heart.
 const NUM_RANDOM: usize = 400;
 const REPETITIONS: usize = 31;
 
@@ -38,6 +39,10 @@ pub fn run() {
         [vec![name.clone()], ratios.iter().map(|ratio| format!("{ratio:.2}")).collect()].concat()
     });
     println!("{}\n{}", libraries.machine, markdown(&format!("pair|{}", DEPTHS.join("|")), lines));
+    for (kind, is_above) in (0..FLOOR_KINDS.len()).flat_map(|kind| [(kind, false), (kind, true)]) {
+        let frames = Scene::floor(&libraries, kind, 20.0, is_above, NUM_RANDOM);
+        println!("{}: {:.2}", frames.name, ratio(&frames.second_frames()));
+    }
     let recorded = Scene::recorded(&libraries);
     for (name, sign) in [("hits", 1.0), ("misses", -1.0)] {
         let mut scene = recorded.clone();

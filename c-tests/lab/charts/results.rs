@@ -11,7 +11,6 @@ use crate::measuring::csv;
 use crate::measuring::ledger::{self, Cost};
 use crate::measuring::measure::Row;
 use crate::measuring::methods::Start;
-use crate::measuring::recorded::RANDOM;
 use crate::measuring::scene::{DEPTHS, KINDS};
 use crate::pages::{between_marks, markdown};
 use crate::paper::ALGORITHM_4_5;
@@ -55,11 +54,11 @@ fn found(rows: &[Row]) -> String {
         rows.iter().find(is_wanted)
     };
     let values = |method: &str, value: fn(&Row) -> f64| -> Vec<f64> {
-        RANDOM.iter().filter_map(|set| of(set, method)).map(value).collect()
+        super::sets().into_iter().filter_map(|set| of(set, method)).map(value).collect()
     };
     // Two spheres are apart: libccd's line of centers is their direction.
     let ratio = |method: &str, over: &str, value: fn(&Row) -> f64| {
-        let sets = RANDOM.iter().filter(|set| **set != "sph_sph");
+        let sets = super::sets().into_iter().filter(|set| *set != "sph_sph");
         let ratios = sets.filter_map(|set| Some(value(of(set, method)?) / value(of(set, over)?)));
         range(&ratios.collect::<Vec<_>>())
     };
@@ -84,7 +83,7 @@ fn found(rows: &[Row]) -> String {
 
 /// Returns the errors of the directions of independent poses: root of the mean square, 99 %, largest.
 fn directions(rows: &[Row]) -> String {
-    let lines = RANDOM.map(|set| {
+    let lines = super::sets().into_iter().map(|set| {
         let cell = |(method, start, _)| {
             let is_wanted = |r: &&Row| (&*r.set, &*r.method, r.start, r.tolerance) == (set, method, start, Some(1e-6));
             rows.iter()

@@ -16,7 +16,7 @@ fn quick_charts_are_whole_and_sound() {
     assert_eq!(motions.len(), 18 * 10);
     assert!(motions.iter().all(|row| row.jitter.is_some() && row.direction_rms.is_some()));
     let local = read("local.csv");
-    assert_eq!(local.len(), 11 * 2 * 2 * 4);
+    assert_eq!(local.len(), 14 * 2 * 2 * 4);
     let rows = [read("accuracy.csv"), motions, local].concat();
     assert!(rows.len() > 500, "{} rows", rows.len());
     for row in &rows {
