@@ -10,7 +10,7 @@
 //! `cargo run --release -p lab --bin engines -- screens` compare.sh's screen of a program of each consumer's (a minute)
 //! `cargo run --release -p lab --bin engines -- steps` a step of whole programs on both libraries (2 minutes)
 //! `cargo run --release -p lab --bin engines -- long` whole simulations, longer and harder (3 minutes)
-//! `cargo run --release -p lab --bin engines -- price` the front page's price, of the pages' tables, as `fcl` and `steps` too
+//! `cargo run --release -p lab --bin engines -- price` the price on the front page and the engines', of the pages' tables, as `fcl` and `steps` too
 
 #[path = "mod.rs"]
 mod engines;

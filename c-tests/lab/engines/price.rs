@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! The price on the front page: one sentence and one table, made of the pages' own tables, so that they agree.
+//! The price on the front page, one sentence and one table, and the sentence on the page of the engines: made of the pages' own
+//! tables, so that they agree.
 
 use crate::harness::root;
 use crate::pages::{markdown, write_between_marks};
@@ -40,8 +41,8 @@ fn times([low, high]: [f64; 2]) -> String {
     if low == high { low } else { format!("{low} to {high}") }
 }
 
-/// Returns the sentence and the table.
-fn text() -> String {
+/// Returns pages with their text: the sentence and the table, and the sentence.
+fn texts() -> [(&'static str, String); 2] {
     let steps = Table::read("include/README.md", "steps");
     let fcl = Table::read("c-tests/engines/README.md", "fcl");
     let calls = Table::read("README.md", "main.sh readme");
@@ -75,12 +76,17 @@ fn text() -> String {
         times(programs),
         times(contacts),
     );
-    format!("{sentence}\n\n{table}\n")
+    let on_engines = format!(
+        "Contacts in FCL take [{} times](#what-fcl-costs-by-use) their time on libccd, [whole programs](../../include/README.md#prices) {} times.",
+        times(contacts),
+        times(programs),
+    );
+    [("README.md", format!("{sentence}\n\n{table}\n")), ("c-tests/engines/README.md", format!("{on_engines}\n"))]
 }
 
-/// Writes them into the front page.
+/// Writes them into the pages.
 pub fn write() {
-    write_between_marks("README.md", "price", &text());
+    texts().iter().for_each(|(page, text)| write_between_marks(page, "price", text));
 }
 
 fn percent(range: [f64; 2]) -> String {
@@ -88,9 +94,11 @@ fn percent(range: [f64; 2]) -> String {
     if low == high { low } else { format!("{low} to {high} %") }
 }
 
-/// The front page has the price of the tables as they are; `price` writes it anew.
+/// The pages have the price of the tables as they are; `price` writes it anew.
 #[test]
-fn the_front_page_has_it() {
-    let page = std::fs::read_to_string(root().join("README.md")).expect("the front page");
-    assert!(page.contains(&format!("<!-- price -->\n{}<!-- end -->", text())), "{}", text());
+fn the_pages_have_it() {
+    for (page, text) in texts() {
+        let found = std::fs::read_to_string(root().join(page)).expect("a page");
+        assert!(found.contains(&format!("<!-- price -->\n{text}<!-- end -->")), "{page}: {text}");
+    }
 }
