@@ -63,9 +63,6 @@ const WIDEST_TILT_EDGES: f64 = 0.25 * WIDEST_TILT_DISTANCES;
 /// 1 mm deep on plates of 20 m, and of icosahedra at every depth): 0.3 4.7 and 6.9, 0.35 4.7 and 6.9, 0.4 4.8 and
 /// 6.9, without 7.5 and 6.8; proofs of the latter 7.6, 7.5, 7.5 and 7.4.
 pub const FAR_UPPER_REL: f64 = 0.35;
-/// The part of the distance from the ray that the next point of the discovery may leave: a point that closes less than 0.1 %
-/// is the same corner, rounded, and a direction is evaluated.
-const MAX_REST: f64 = 0.999;
 /// The least progress towards the ray, relative to the size of D: above the rounding of products of points.
 const MIN_PROGRESS_REL: f64 = 1e-12;
 /// The least squared sine of the angle between two sides of a ring, 6°: a narrower one bounds no volume.
@@ -220,7 +217,7 @@ impl OpenPortal {
     /// Returns whether `w` is closer to the ray than the corners, or beyond it.
     #[inline(always)]
     fn is_closer(&self, w: &Vec3, least_progress: f64) -> bool {
-        self.towards_ray.dot(w) > MAX_REST * self.height + least_progress
+        self.towards_ray.dot(w) > self.height + least_progress
     }
 
     /// Makes room for another entry: a full set keeps the corners and `next`.
