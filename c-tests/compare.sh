@@ -152,8 +152,8 @@ fi
 
 # --- the run ---------------------------------------------------------------------------
 
-# LD_PRELOAD is split at blanks and colons, which a path may have.
-links=$(mktemp -d)
+# LD_PRELOAD is split at blanks and colons, which a path may have, TMPDIR's too.
+links=$(TMPDIR=/tmp mktemp -d)
 trap 'rm -rf "$counts" "$links"' EXIT
 ln -s "$work/compare.so" "$links"
 # on SIDE FILE: makes a library ready to be preloaded; under the name libccd.so.2 it replaces the program's own

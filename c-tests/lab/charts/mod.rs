@@ -77,7 +77,7 @@ pub fn redraw(out: &Path) {
     results::write(out, &machine, &rows, &csv::read(&out.join(MOTIONS)).1, &local);
 }
 
-/// Measures and draws; `is_quick`: fewer poses, tolerances and repetitions, two minutes.
+/// Measures and draws; `is_quick`: fewer poses, tolerances and repetitions.
 pub fn run(out: &Path, is_quick: bool) {
     let libraries = Libraries::open();
     let peers = Peers::build(&libraries);

@@ -80,6 +80,15 @@ fn a_share_is_judged() {
     Compared::run("plain", &["--every", "0"]).assert(&[("queries", 500.0), ("sampled", 0.0)]);
 }
 
+/// ld.so splits LD_PRELOAD at blanks.
+#[test]
+fn the_temporary_folder_may_have_a_blank() {
+    let dir = tempfile::Builder::new().prefix("a folder").tempdir().expect("a directory");
+    let mut command = callbacks().compared(&["--fields"]).command();
+    let written = harness::must_succeed(command.arg("plain").env("TMPDIR", dir.path()), "compare.sh");
+    assert_eq!(fields(&written.stdout, "counted")["queries"], 500.0);
+}
+
 /// The whole process uses this library then, as its first line says.
 #[test]
 fn swapped_program_gets_the_answers_of_this_library() {
