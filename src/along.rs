@@ -29,7 +29,7 @@ use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
+use crate::portal::{Exact, NearRay, Portal, PortalPlane, discover};
 use crate::trace;
 use crate::types::{Direction, Settings, Solution, Status};
 
@@ -126,31 +126,37 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
         *portal = found;
         let mut lower = 0.0;
         loop {
-            let n = self.refine_by_known(portal);
-            let along = n.dot(&self.dir);
-            // Negated for NaN.
-            if !(along > 0.0) {
+            let (dir, tolerance) = (self.dir, self.tolerance());
+            let rounding = self.query.scale.height_eps();
+            let level = |plane: &PortalPlane| {
+                let along = plane.normal.dot(&dir);
+                Some(INSERT_HEIGHT_GAPS * tolerance * along + rounding * plane.length)
+            };
+            let climbed = portal.climb(self.set, &dir, Exact::Crossing, level);
+            let Some(plane) = climbed
+                .and_then(|plane| plane.unit())
+                .filter(|plane| plane.normal.dot(&dir) > 0.0)
+            else {
                 return Ok(lower);
-            }
+            };
+            let along = plane.normal.dot(&dir);
             // The corners are on the plane within rounding: take the lowest.
-            let [a, b, c] = portal.points().map(|v| n.dot(&v));
+            let [a, b, c] = portal.points().map(|v| plane.normal.dot(&v));
             let offset = lesser(lesser(a, b), c);
-            let rounding = self.query.scale.height_eps() * n.norm();
             lower = larger((offset - rounding) / along, lower);
             trace::lower_bound(lower);
-            if self.upper() - lower <= self.tolerance() || self.budget() == 0 {
+            if self.upper() - lower <= tolerance || self.budget() == 0 {
                 return Ok(lower);
             }
             self.iterations += 1;
             self.set.make_room(&mut portal.corners);
-            let length = n.norm();
-            self.query.tilt_rule.tolerance = self.settings.tolerance * (along / length);
-            let sample = self.query.evaluate(self.set, &(n / length))?;
+            self.query.tilt_rule.tolerance = self.settings.tolerance * along;
+            let sample = self.query.evaluate(self.set, &plane.normal)?;
             self.note_planes(self.set.len() - 1);
-            if !(n.dot(&sample.w) - offset > rounding) {
+            if !(plane.normal.dot(&sample.w) - offset > rounding) {
                 return Ok(lower);
             }
-            portal.replace_corner_exactly(&self.dir, sample.vertex());
+            portal.replace_corner(&dir, sample.vertex(), Exact::Crossing);
         }
     }
 
@@ -163,25 +169,6 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
                 self.exit_plane = plane;
             }
         }
-    }
-
-    /// Refines the portal by known differences. Returns its normal, of any length.
-    fn refine_by_known(&self, portal: &mut Portal) -> Vec3 {
-        let mut n = Vec3::zeros();
-        for _ in 0..MAX_STEPS {
-            let [a, b, c] = &portal.points();
-            n = normal(a, b, c);
-            let w = self.set.farthest_vertex(&n);
-            let level = INSERT_HEIGHT_GAPS * self.tolerance() * n.dot(&self.dir)
-                + self.query.scale.height_eps() * n.norm();
-            // A corner is above its own face only by rounding; taken again, it would repeat until MAX_STEPS.
-            let is_corner = portal.corners.iter().any(|v| v.pair == w.pair);
-            if is_corner || !(n.dot(&(w.w - a)) > level) {
-                break;
-            }
-            portal.replace_corner_exactly(&self.dir, w);
-        }
-        n
     }
 
     /// Returns the result for a lower bound, metres. The witness points are those of the point of the portal at which

@@ -36,12 +36,9 @@
 //! objects overlap, which is not proven: use the global query. [`Status::InconsistentSupport`]: also if a center is
 //! outside its object.
 
-mod face;
-
 use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::intersect::contains_origin;
-use crate::local::face::Face;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
@@ -52,7 +49,7 @@ use crate::minkowski::tuning::{
     MIN_GAIN_GAPS, NEGLIGIBLE_GAPS, SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::VertexSet;
-use crate::portal::{MAX_STEPS, NearRay, Portal, discover};
+use crate::portal::{Exact, MAX_STEPS, NearRay, Portal, PortalPlane, discover};
 use crate::trace;
 use crate::types::{Direction, Settings, Solution, Status};
 
@@ -75,9 +72,9 @@ enum Step {
     /// Follow the ray along this unit vector.
     Ray(Vec3),
     /// Confirm a candidate: the foot is in the face, and the support plane is at the same distance.
-    Face(Face, SupportPlane),
+    Face(SupportPlane),
     /// Confirm a candidate: the upper bound agrees with the prediction of this model.
-    Fit(Face, Model),
+    Fit(Model),
     /// End without a minimum.
     End(Status),
 }
@@ -105,6 +102,8 @@ struct Prediction {
 struct Walk<'w, 'q, A, B, const N: usize> {
     query: &'w mut SupportQuery<'q, A, B>,
     set: &'w mut VertexSet<N>,
+    /// The portal of the ray; once it is refined, a face of the inner model.
+    portal: Portal,
     fit: SphereFit,
     /// True if the sphere fits were refuted.
     is_fit_refuted: bool,
@@ -139,6 +138,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         is_centered: query.center.is_some(),
         query,
         set,
+        portal: Portal::default(),
         fit: SphereFit::exact(),
         is_fit_refuted: false,
         newton: None,
@@ -195,28 +195,28 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
                 near2,
                 ring,
             )?;
-            let step = match portal {
-                Some(mut portal) => self.refine(&ray, &mut portal, tolerance)?,
-                None => Step::End(Status::Rounding),
+            let Some(portal) = portal else {
+                return Ok(self.upper_bound(Status::Rounding));
             };
-            ray = match step {
+            self.portal = portal;
+            ray = match self.refine(&ray, tolerance)? {
                 // The same portal would be found again.
                 Step::Ray(next) if next == ray && self.set.len() == known => {
                     Direction::tilted(&next, STUCK_TILT_RAD).n
                 }
                 Step::Ray(next) => next,
                 Step::End(status) => return Ok(self.upper_bound(status)),
-                Step::Face(face, plane) => {
+                Step::Face(plane) => {
                     // Else a lower valley is known: the walk continues there.
                     if !(plane.depth > self.query.upper.depth + MIN_GAIN_GAPS * tolerance) {
-                        return self.result(&face, &plane, None);
+                        return self.result(&plane, None);
                     }
                     self.query.upper.dir
                 }
-                Step::Fit(face, model) => {
-                    if self.confirm_fit(&face, &model, tolerance)? {
+                Step::Fit(model) => {
+                    if self.confirm_fit(&model, tolerance)? {
                         let plane = self.query.upper;
-                        return self.result(&face, &plane, Some(model));
+                        return self.result(&plane, Some(model));
                     }
                     self.query.upper.dir
                 }
@@ -246,101 +246,91 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Refines the portal of the ray until there is a next step.
     ///
-    /// One loop over one portal: the tests share its face, and each ends the loop or evaluates a direction.
-    fn refine(&mut self, ray: &Vec3, portal: &mut Portal, tolerance: f64) -> Result<Step, Stop> {
-        let mut along_normal = false;
-        let mut height_eps = self.query.scale.height_eps();
+    /// One loop over one portal: the tests share its plane, and each ends the loop or evaluates a direction.
+    fn refine(&mut self, ray: &Vec3, tolerance: f64) -> Result<Step, Stop> {
+        // The normal of the face above which a prediction found nothing.
+        let mut failed_normal = Vec3::zeros();
         for _ in 0..MAX_STEPS {
-            let [a, b, c] = portal.points();
-            let (x, y) = (b - a, c - a);
-            let n = x.cross(&y);
-            let level = INSERT_HEIGHT_GAPS * tolerance + height_eps;
-            let mut w = self.set.farthest_vertex(&n);
-            // Above every corner: a corner is above its own face only by rounding, and would repeat until MAX_STEPS.
-            let highest = larger(larger(n.dot(&x), n.dot(&y)), 0.0);
-            let height = n.dot(&(w.w - a)) - highest;
-            // Compares squares, which need no root.
-            let is_above = height > 0.0 && height * height > level * level * n.norm_squared();
-            if !is_above {
-                let Some(face) = Face::new(&portal.corners, &n) else {
-                    return Ok(Step::End(Status::Rounding));
-                };
-                let is_inside = face.offset > 0.0 && face.has_foot(4.0 * height_eps);
-                if let Some(step) = self.step_on_known(&face, is_inside, tolerance) {
-                    return Ok(step);
+            let rounding = self.query.scale.height_eps();
+            let level = INSERT_HEIGHT_GAPS * tolerance + rounding;
+            let climbed = self.portal.climb(self.set, ray, Exact::Nothing, |face| {
+                Some(level * face.length)
+            });
+            let Some(face) = climbed.and_then(|face| face.unit()) else {
+                return Ok(Step::End(Status::Rounding));
+            };
+            let is_inside =
+                face.offset > 0.0 && self.portal.is_crossed(&face.normal, 4.0 * rounding);
+            if let Some(step) = self.step_on_known(&face, is_inside, tolerance) {
+                return Ok(step);
+            }
+            let mut prediction = None;
+            let worthwhile = self.query.upper.depth - MIN_GAIN_GAPS * tolerance;
+            if face.normal != failed_normal {
+                if self.failures < MAX_FAILURES {
+                    prediction = self.predict(&face.normal);
                 }
-                let mut prediction = None;
-                let worthwhile = self.query.upper.depth - MIN_GAIN_GAPS * tolerance;
-                if !along_normal {
-                    if self.failures < MAX_FAILURES {
-                        prediction = self.predict(&face);
+                if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
+                    if self.is_upper_bound(&p, tolerance) {
+                        return Ok(Step::Fit(p.model));
                     }
-                    if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
-                        if self.is_upper_bound(&p, tolerance) {
-                            return Ok(Step::Fit(face, p.model));
-                        }
-                        // Equal to the upper bound, but in another direction: evaluated too.
-                        prediction =
-                            Some(p).filter(|p| self.equals_upper_bound(p.value, tolerance));
-                    }
-                    // The normal is a new ray in the same valley.
-                    let is_same_valley = !is_inside
-                        && face.offset > 0.0
-                        && face.normal.dot(&self.query.upper.dir) > SAME_VALLEY_COS
-                        && !is_same(&face.normal, ray);
-                    if is_same_valley && prediction.is_none() {
-                        return Ok(Step::Ray(face.normal));
-                    }
+                    // Equal to the upper bound, but in another direction: evaluated too.
+                    prediction = Some(p).filter(|p| self.equals_upper_bound(p.value, tolerance));
                 }
-                if let Some(status) = self.limit() {
-                    return Ok(Step::End(status));
+                // The normal is a new ray in the same valley.
+                let is_same_valley = !is_inside
+                    && face.offset > 0.0
+                    && face.normal.dot(&self.query.upper.dir) > SAME_VALLEY_COS
+                    && !is_same(&face.normal, ray);
+                if is_same_valley && prediction.is_none() {
+                    return Ok(Step::Ray(face.normal));
                 }
-                let before = self.query.upper.depth;
-                let sample = self.evaluate(&prediction.map_or(face.normal, |p| p.dir))?;
-                height_eps = self.query.scale.height_eps();
-                if let Some(p) = &prediction {
-                    let slack = MAX_MISS_REL * larger(before - p.value, tolerance);
-                    if sample.h < p.value + slack {
-                        return Ok(match self.is_minimum(p, sample.h, tolerance) {
-                            true => Step::Fit(face, p.model),
-                            false => Step::Ray(p.dir),
-                        });
-                    }
-                    self.failures += 1;
-                }
-                if !(face.normal.dot(&sample.w) - face.offset > level) {
-                    if prediction.is_some() {
-                        along_normal = true;
-                        continue;
-                    }
-                    let plane = self.query.plane(self.set, sample.pair.a.into());
-                    return Ok(match is_inside {
-                        true => Step::Face(face, plane),
-                        false => Step::Ray(face.normal),
+            }
+            if let Some(status) = self.limit() {
+                return Ok(Step::End(status));
+            }
+            let before = self.query.upper.depth;
+            let sample = self.evaluate(&prediction.map_or(face.normal, |p| p.dir))?;
+            if let Some(p) = &prediction {
+                let slack = MAX_MISS_REL * larger(before - p.value, tolerance);
+                if sample.h < p.value + slack {
+                    return Ok(match self.is_minimum(p, sample.h, tolerance) {
+                        true => Step::Fit(p.model),
+                        false => Step::Ray(p.dir),
                     });
                 }
-                w = sample.vertex();
+                self.failures += 1;
             }
-            along_normal = false;
-            portal.replace_corner(ray, w);
+            if face.height(&sample.w) > level {
+                self.portal
+                    .replace_corner(ray, sample.vertex(), Exact::Nothing);
+            } else if prediction.is_some() {
+                failed_normal = face.normal;
+            } else {
+                let plane = self.query.plane(self.set, sample.pair.a.into());
+                return Ok(match is_inside {
+                    true => Step::Face(plane),
+                    false => Step::Ray(face.normal),
+                });
+            }
         }
         Ok(Step::End(Status::Rounding))
     }
 
     /// Returns the next step from a face with no known difference above it, if it can be taken without a callback.
-    fn step_on_known(&self, face: &Face, is_inside: bool, tolerance: f64) -> Option<Step> {
+    fn step_on_known(&self, face: &PortalPlane, is_inside: bool, tolerance: f64) -> Option<Step> {
         let upper = &self.query.upper;
         let angle2 = 2.0 * (1.0 - face.normal.dot(&upper.dir));
         if is_inside && self.equals_upper_bound(face.offset, tolerance) {
             // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
-            let cone = 2.0 * face.foot_depth() / face.offset;
+            let cone = 2.0 * self.portal.foot_depth(&face.normal) / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
                 lesser(CONFIRM_RANGE_RAD[0].powi(2), tolerance / upper.depth)
             } else {
                 0.25 * cone * cone
             };
             if angle2 <= allowed2 {
-                return Some(Step::Face(*face, *upper));
+                return Some(Step::Face(*upper));
             }
         }
         // The upper bound is in a lower valley.
@@ -351,9 +341,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     /// Returns the minimum that the sphere fits predict, else the one that Newton's step predicts. Its direction was
     /// not evaluated yet, or is that of the upper bound. (Measured: if directions may be evaluated again, the longest
     /// walks of balls and capsules take twice as many support points.)
-    fn predict(&mut self, face: &Face) -> Option<Prediction> {
+    fn predict(&mut self, normal: &Vec3) -> Option<Prediction> {
         self.fit.update(self.set, &self.query.upper);
-        let sphere = self.predict_sphere(face).filter(|p| self.is_new(&p.dir));
+        let sphere = self.predict_sphere(normal).filter(|p| self.is_new(&p.dir));
         if sphere.is_some() {
             return sphere;
         }
@@ -370,15 +360,15 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Returns the minimum that the sphere fits predict.
-    fn predict_sphere(&self, face: &Face) -> Option<Prediction> {
+    fn predict_sphere(&self, normal: &Vec3) -> Option<Prediction> {
         let sum = self.fit.sum();
         if self.is_fit_refuted || !(sum > 0.0) {
             return None;
         }
-        let found = self.fit.predict(self.set, &face.corners, &face.normal);
+        let found = self.fit.predict(self.set, &self.portal.corners, normal);
         // Any direction is a minimum of concentric balls.
         let is_concentric = self.is_centered && self.interior.norm() <= SAME_CENTER_REL * sum;
-        let (dir, value) = found.or_else(|| is_concentric.then_some((face.normal, sum)))?;
+        let (dir, value) = found.or_else(|| is_concentric.then_some((*normal, sum)))?;
         let model = Model::Sphere;
         Some(Prediction { model, dir, value })
     }
@@ -425,7 +415,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Returns whether the upper bound, which a model predicts, is a minimum. A sharp tip can satisfy the sphere fit.
-    fn confirm_fit(&mut self, face: &Face, model: &Model, tolerance: f64) -> Result<bool, Stop> {
+    fn confirm_fit(&mut self, model: &Model, tolerance: f64) -> Result<bool, Stop> {
         let n = self.query.upper.dir;
         if let Model::Smooth(flattest) = model {
             return self.is_lowest(&n, &[*flattest, -flattest], None, tolerance);
@@ -439,8 +429,12 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             return Ok(false);
         }
         let upper = &self.query.upper;
-        self.is_fit_refuted =
-            !(self.fit).are_spheres_confirmed(self.set, &face.corners, upper, center_tolerance);
+        self.is_fit_refuted = !(self.fit).are_spheres_confirmed(
+            self.set,
+            &self.portal.corners,
+            upper,
+            center_tolerance,
+        );
         Ok(!self.is_fit_refuted)
     }
 
@@ -492,22 +486,20 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Proves the overlap. Returns the confirmed minimum with its witness points: those of the face without a model.
-    fn result(
-        &mut self,
-        face: &Face,
-        plane: &SupportPlane,
-        model: Option<Model>,
-    ) -> Result<Solution, Stop> {
+    fn result(&mut self, plane: &SupportPlane, model: Option<Model>) -> Result<Solution, Stop> {
         let SupportPlane {
             dir, depth, point, ..
         } = plane;
         let (point1, point2) = match model {
             Some(Model::Smooth(_)) => (point.v1, point.v2),
-            Some(Model::Sphere) => self.fit.witnesses(self.set, &face.corners, dir).into(),
+            Some(Model::Sphere) => self
+                .fit
+                .witnesses(self.set, &self.portal.corners, dir)
+                .into(),
             None => {
-                let [a, b, c] = face.corners.each_ref().map(|v| v.w);
+                let [a, b, c] = self.portal.points();
                 let weights = barycentric::triangle(&(dir * *depth), &a, &b, &c).weights;
-                let corners = face.corners.map(|v| self.set.point(v.pair));
+                let corners = self.portal.corners.map(|v| self.set.point(v.pair));
                 support::witnesses(&weights, corners.each_ref())
             }
         };
@@ -515,7 +507,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
         if is_center_outside || self.query.is_inconsistent(self.set) {
             return Ok(self.upper_bound(Status::InconsistentSupport));
         }
-        self.prove_overlap(face)?;
+        self.prove_overlap()?;
         self.query.confirm_upper()?;
         let mut hit = Solution {
             depth: *depth,
@@ -553,8 +545,8 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
 
     /// Proves that the origin is in D: by the tetrahedron of interior point and face if it contains the origin, else by
     /// GJK, which evaluates directions if the known vertices are not enough.
-    fn prove_overlap(&mut self, face: &Face) -> Result<(), Stop> {
-        let [a, b, c] = face.corners.map(|v| v.w);
+    fn prove_overlap(&mut self) -> Result<(), Stop> {
+        let [a, b, c] = self.portal.points();
         let v = self.interior;
         let ulp = f64::EPSILON * self.query.scale.size();
         let tetrahedron = Tetrahedron::new([v, a, b, c], ulp);
@@ -562,7 +554,9 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
             return Ok(());
         }
         let center = self.query.center;
-        contains_origin(self.query, self.set, center, &face.normal, false).map(|_| ())
+        let face = self.portal.plane(Exact::Nothing).unit();
+        let dir = face.map_or(self.query.upper.dir, |face| face.normal);
+        contains_origin(self.query, self.set, center, &dir, false).map(|_| ())
     }
 }
 

@@ -10,8 +10,9 @@
 //! 1. *Discovery*: v1 is the known difference farthest along the ray. v2 is the point farthest along the
 //!    perpendicular from v1 to the ray. Then the point farthest along the normal of the plane of ray direction and
 //!    edge v1 v2, on the side of the ray, replaces v1 or v2, or completes the portal as v3.
-//! 2. *Refinement*: the point farthest along the portal's normal replaces one corner, so that the ray
-//!    crosses the new portal. It ends if the bounds meet, or if no point is above the portal.
+//! 2. *Climb* ([`Portal::climb`]): the known difference farthest along the portal's normal replaces one corner, so that
+//!    the ray crosses the new portal, until none is above it. Refinement, the ray of `along.rs`, the local search and the refinement of directions do so.
+//! 3. *Refinement*: climbs and support calls in turn. It ends if the bounds meet, or if no point is above the portal.
 //!
 //! Departures. Both steps take a known difference if one is far enough, and evaluate the callbacks otherwise.
 //! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
@@ -25,7 +26,7 @@
 //! as a tetrahedron of GJK. [`refine`] leaves a valid portal, whatever ended it. [`Stop::Separated`]: an evaluated
 //! direction is a separating axis; this is the separation test.
 
-use crate::math::{Vec3, lesser, normalise_unscaled, perpendicular, tangents};
+use crate::math::{self, Vec3, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
@@ -68,21 +69,31 @@ const MIN_PROGRESS_REL: f64 = 1e-12;
 /// The least squared sine of the angle between two sides of a ring, 6°: a narrower one bounds no volume.
 const MIN_RING_SINE2: f64 = 0.01;
 
+/// What of a portal is exact.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Exact {
+    /// Nothing: for callers that test afterwards what the portal proves.
+    Nothing,
+    /// The normals of slivers, and the choice of corners ([`choose_corner`]): for a bound that relies on the crossing.
+    /// Measured: elsewhere as many support points, and at least 2 to 6 % more instructions of a search.
+    Crossing,
+}
+
 /// A triangle of points of D that a ray crosses, unless it is a ring. Its normal points outward: along the ray.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Portal {
     /// In the order that gives the normal its direction.
     pub corners: [Vertex; 3],
 }
 
-/// The plane N·x = d through the corners of a portal.
+/// The plane N·x = d of a portal. Its heights are distances times the length of N: most need no division.
 #[derive(Clone, Copy, Debug)]
 pub struct PortalPlane {
-    /// N, of any length.
+    /// N, outward, of any length.
     pub normal: Vec3,
-    /// The length of N.
+    /// The length of N, twice the area of the portal, m²; 0 if its corners lie on a line.
     pub length: f64,
-    /// d: the distance from the origin, times the length of N; negative if the origin is on the outer side.
+    /// d, negative if the origin is on the outer side.
     pub offset: f64,
 }
 
@@ -94,10 +105,22 @@ impl PortalPlane {
         self.offset * self.offset < largest2 * self.length * self.length
     }
 
-    /// Returns whether `w` is above the plane by more than `level`, metres; `false` for NaN.
+    /// Returns the height of `w` above the plane, times the length of N.
     #[inline(always)]
-    fn is_exceeded_by(&self, w: &Vec3, level: f64) -> bool {
-        self.normal.dot(w) - self.offset > level * self.length
+    pub fn height(&self, w: &Vec3) -> f64 {
+        self.normal.dot(w) - self.offset
+    }
+
+    /// Returns the same plane with a unit normal; `None` if the corners lie on a line.
+    #[inline(always)]
+    pub fn unit(&self) -> Option<Self> {
+        let normal = normalise_unscaled(&self.normal)?;
+        let offset = self.offset / self.length;
+        Some(Self {
+            normal,
+            length: 1.0,
+            offset,
+        })
     }
 }
 
@@ -110,9 +133,12 @@ impl Portal {
 
     /// Returns the plane of the corners.
     #[inline(always)]
-    pub fn plane(&self) -> PortalPlane {
+    pub fn plane(&self, exact: Exact) -> PortalPlane {
         let [a, b, c] = self.points();
-        let normal = (b - a).cross(&(c - a));
+        let normal = match exact {
+            Exact::Nothing => (b - a).cross(&(c - a)),
+            Exact::Crossing => math::normal(&a, &b, &c),
+        };
         PortalPlane {
             normal,
             length: normal.norm(),
@@ -120,10 +146,37 @@ impl Portal {
         }
     }
 
-    /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal, by signs alone: for
-    /// callers that test afterwards what the portal proves.
+    /// Replaces corners by known differences, so that the ray still crosses the portal, as long as one is higher above it
+    /// than `level` returns, a height as [`PortalPlane::height`]. Returns the last plane; `None` if `level` returns `None`,
+    /// which ends the climb.
     #[inline(always)]
-    pub fn replace_corner(&mut self, ray: &Vec3, w: Vertex) {
+    pub fn climb<const N: usize>(
+        &mut self,
+        set: &VertexSet<N>,
+        ray: &Vec3,
+        exact: Exact,
+        level: impl Fn(&PortalPlane) -> Option<f64>,
+    ) -> Option<PortalPlane> {
+        let mut steps = 0;
+        loop {
+            let plane = self.plane(exact);
+            let level = level(&plane)?;
+            let w = set.farthest_vertex(&plane.normal);
+            if !(plane.height(&w.w) > level) || steps == MAX_STEPS {
+                return Some(plane);
+            }
+            self.replace_corner(ray, w, exact);
+            steps += 1;
+        }
+    }
+
+    /// Replaces one corner by `w`, a point beyond the portal, so that the ray crosses the new portal.
+    #[inline(always)]
+    pub fn replace_corner(&mut self, ray: &Vec3, w: Vertex, exact: Exact) {
+        if exact == Exact::Crossing {
+            self.corners[choose_corner(self.points(), ray, &w.w).min(2)] = w;
+            return;
+        }
         // The side of the plane through the ray and w on which each corner lies.
         let normal = ray.cross(&w.w);
         let [side0, side1, side2] = self.corners.each_ref().map(|v| normal.dot(&v.w) > 0.0);
@@ -137,22 +190,30 @@ impl Portal {
         }
     }
 
-    /// Does the same by [`choose_corner`], for a bound that relies on the crossing. Measured: elsewhere as many support points,
-    /// and at least 2 to 6 % more instructions of a search.
-    #[inline(always)]
-    pub fn replace_corner_exactly(&mut self, ray: &Vec3, w: Vertex) {
-        self.corners[choose_corner(self.points(), ray, &w.w).min(2)] = w;
-    }
-
     /// Returns whether the ray crosses the portal, within `eps`, metres.
     pub fn is_crossed(&self, ray: &Vec3, eps: f64) -> bool {
-        let [a, b, c] = &self.points();
-        [(a, b), (b, c), (c, a)].into_iter().all(|(p, q)| {
-            // The product with the edge, not with q, loses no digits for small portals.
-            let edge = q - p;
-            let side = ray.dot(&p.cross(&edge));
-            side >= 0.0 || side * side <= eps * eps * edge.norm_squared()
+        let is_inside = |i| {
+            let (side, length2) = self.side(ray, i);
+            side >= 0.0 || side * side <= eps * eps * length2
+        };
+        (0..3).all(is_inside)
+    }
+
+    /// Returns the least distance of unit `normal`, that of the portal, from an edge, metres; negative outside.
+    pub fn foot_depth(&self, normal: &Vec3) -> f64 {
+        (0..3).fold(f64::INFINITY, |least, i| {
+            let (side, length2) = self.side(normal, i);
+            lesser(side / length2.sqrt(), least)
         })
+    }
+
+    /// Returns the distance of the ray from the line of edge `i`, positive inside, times the length of the edge; and the
+    /// square of that length.
+    fn side(&self, ray: &Vec3, i: usize) -> (f64, f64) {
+        let [p, q] = [i % 3, (i + 1) % 3].map(|i| self.corners[i].w);
+        // The product with the edge, not with q, loses no digits for small portals.
+        let edge = q - p;
+        (ray.dot(&p.cross(&edge)), edge.norm_squared())
     }
 }
 
@@ -445,39 +506,35 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
     limit: &GapLimit,
 ) -> Result<(), Stop> {
     trace::stage("refinement");
-    let mut along_normal = false;
+    // The normal of the portal above which a fit's direction found nothing.
+    let mut failed_normal = Vec3::zeros();
     for _ in 0..MAX_STEPS {
-        let plane = portal.plane();
-        let PortalPlane {
-            normal,
-            length,
-            offset,
-        } = plane;
-        if !(length > 0.0) || offset > 0.0 && !(is_shallow(query) || plane.is_shallow(query)) {
-            return Ok(());
-        }
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
-        let mut w = set.farthest_vertex(&normal);
-        if !plane.is_exceeded_by(&w.w, INSERT_HEIGHT_GAPS * gap) {
-            if offset > 0.0 && offset >= (upper - gap) * length || set.is_full() {
-                return Ok(());
-            }
-            let is_along_normal = along_normal || offset < 0.0;
-            let corners = |_: &_| portal.corners;
-            let (sample, source) =
-                evaluate_beyond(query, set, fit, corners, &normal, gap, is_along_normal)?;
-            w = sample.vertex();
-            if !plane.is_exceeded_by(&w.w, query.scale.height_eps()) {
-                if source == DirectionSource::Normal {
-                    return Ok(());
-                }
-                along_normal = true;
-                continue;
-            }
+        let is_far_enough = |plane: &PortalPlane| {
+            plane.offset > 0.0 && !(is_shallow(query) || plane.is_shallow(query))
+        };
+        let level = |plane: &PortalPlane| {
+            (!is_far_enough(plane)).then_some(INSERT_HEIGHT_GAPS * gap * plane.length)
+        };
+        let Some(plane) = portal.climb(set, ray, Exact::Nothing, level) else {
+            return Ok(());
+        };
+        let has_closed = plane.offset > 0.0 && plane.offset >= (upper - gap) * plane.length;
+        if has_closed || set.is_full() || !(plane.length > 0.0) {
+            return Ok(());
         }
-        along_normal = false;
-        portal.replace_corner(ray, w);
+        let along_normal = plane.normal == failed_normal || plane.offset < 0.0;
+        let corners = |_: &_| portal.corners;
+        let (sample, source) =
+            evaluate_beyond(query, set, fit, corners, &plane.normal, gap, along_normal)?;
+        if plane.height(&sample.w) > query.scale.height_eps() * plane.length {
+            portal.replace_corner(ray, sample.vertex(), Exact::Nothing);
+        } else if source == DirectionSource::Normal {
+            return Ok(());
+        } else {
+            failed_normal = plane.normal;
+        }
     }
     Ok(())
 }

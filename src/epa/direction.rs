@@ -15,23 +15,20 @@
 //! Outputs. The upper bound, which is sound, and a face of the inner model near it, for witness points. Nothing else is
 //! proven.
 
-use crate::math::{Vec3, lesser, normalise_unscaled};
+use crate::math::Vec3;
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::SupportMap;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES};
+use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
-use crate::portal::Portal;
+use crate::portal::{Exact, Portal, PortalPlane};
 use crate::trace;
 
 /// The largest number of directions of a refinement. Measured on 20 pairs of primitives 0.3 m deep (`directions.c`): with 3
 /// the largest error is 1.1° in place of 0.8°, and warm directions of moving pairs jitter by 0.12° in place of 0.09°; a
 /// curved pair takes 0.1 to 0.5 support points fewer.
 pub const MAX_REFINEMENTS: usize = 4;
-/// The largest number of known differences that replace a corner before a direction is evaluated. Insensitive: 5 to 10.
-const MAX_REPLACED: u32 = 2 * MAX_FAILURES;
-
 /// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: a triangle of points of D
 /// that the ray crosses, with an outward normal. `lower`: the lower bound of the depth, metres. `tolerance`: metres. A full
 /// set ends the refinement.
@@ -52,17 +49,19 @@ pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
         let upper = query.upper;
         let target = upper.depth - tolerance;
         let level = query.scale.height_eps() + INSERT_HEIGHT_GAPS * tolerance;
-        let Some(plane) = refine_face(set, face, &upper.dir, level) else {
+        let climbed = face.climb(set, &upper.dir, Exact::Nothing, |plane| {
+            Some(level * plane.length)
+        });
+        let Some(PortalPlane { normal, offset, .. }) = climbed.and_then(|plane| plane.unit())
+        else {
             break;
         };
         let prediction = if has_failed {
             None
         } else {
-            predict(set, face, &upper, &plane.0, lower)
+            predict(set, face, &upper, &normal, lower)
         };
-        let Some((dir, value)) = prediction.or_else(|| (plane.1 < target).then_some(plane)) else {
-            break;
-        };
+        let (dir, value) = prediction.unwrap_or((normal, offset));
         // The prediction is the upper bound, or there is no room.
         if !(value < target) || set.is_full() {
             break;
@@ -72,34 +71,9 @@ pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
             break;
         }
         has_failed = prediction.is_some() && !(sample.h < target);
-        face.replace_corner(&query.upper.dir, sample.vertex());
+        face.replace_corner(&query.upper.dir, sample.vertex(), Exact::Nothing);
     }
     Ok(())
-}
-
-/// Replaces corners of a face that the ray along unit `ray` crosses, until no known difference is above it by more than
-/// `level`, metres. Returns its unit normal and its distance from the origin, metres; `None` if the corners lie on a line.
-fn refine_face<const N: usize>(
-    set: &VertexSet<N>,
-    face: &mut Portal,
-    ray: &Vec3,
-    level: f64,
-) -> Option<(Vec3, f64)> {
-    let mut plane = None;
-    for _ in 0..MAX_REPLACED {
-        let [a, b, c] = face.points();
-        let Some(normal) = normalise_unscaled(&(b - a).cross(&(c - a))) else {
-            break;
-        };
-        let offset = lesser(lesser(normal.dot(&a), normal.dot(&b)), normal.dot(&c));
-        plane = Some((normal, offset));
-        let w = set.farthest_vertex(&normal);
-        if !(normal.dot(&w.w) > offset + level) {
-            break;
-        }
-        face.replace_corner(ray, w);
-    }
-    plane
 }
 
 /// Returns the unit direction and the least support value, metres, that a model of D predicts between the lower and the

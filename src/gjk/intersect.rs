@@ -33,7 +33,7 @@ use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::tuning::MAX_FAILURES;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
-use crate::portal::{FAR_UPPER_REL, MAX_STEPS, NearRay, Portal, discover};
+use crate::portal::{Exact, FAR_UPPER_REL, MAX_STEPS, NearRay, Portal, discover};
 use crate::trace;
 use crate::types::Direction;
 
@@ -266,7 +266,8 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
     else {
         return Ok(None);
     };
-    // Each step replaces a corner by a point beyond the origin, or finds no point above the portal.
+    // Each step replaces a corner by a point beyond the origin, or finds no point above the portal. No `Portal::climb`: a known
+    // difference that is above the portal, but not beyond the origin, is not taken, because a support call may separate.
     for _ in 0..MAX_STEPS {
         let [a, b, d] = &portal.points();
         let n = normal(a, b, d);
@@ -293,7 +294,7 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
         if !(n.dot(&w.w) - offset > query.scale.height_eps() * length) {
             return Ok(None);
         }
-        portal.replace_corner(&ray, w);
+        portal.replace_corner(&ray, w, Exact::Nothing);
     }
     Ok(None)
 }

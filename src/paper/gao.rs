@@ -151,7 +151,7 @@ fn run_algorithm_3<A: SupportMap, B: SupportMap>(
 
 /// Makes the result of a support plane. The witness points are those of the point at which the ray crosses
 /// `portal`; without a portal, those of the support point.
-fn make_result(plane: &SupportPlane, portal: Option<&Portal>) -> Solution {
+fn make_result(plane: &SupportPlane, portal: Option<&RayPortal>) -> Solution {
     let (point1, point2) = match portal {
         Some(p) => p.witnesses(),
         None => (plane.point.v1, plane.point.v2),
@@ -195,7 +195,7 @@ fn is_separating(plane: &SupportPlane) -> bool {
 
 /// A portal: three support points whose triangle the ray crosses.
 #[derive(Clone, Copy)]
-struct Portal {
+struct RayPortal {
     /// Unit direction of the ray.
     ray: Vec3,
     /// The support planes of v1, v2, v3, in the order in which the triangle's normal points
@@ -203,7 +203,7 @@ struct Portal {
     planes: [SupportPlane; 3],
 }
 
-impl Portal {
+impl RayPortal {
     /// Returns the outward unit normal of the triangle; `None` if it has no area.
     #[inline]
     fn normal(&self) -> Option<Vec3> {
@@ -269,7 +269,7 @@ fn rounding(size: f64) -> f64 {
 /// Reason why the search along a ray ended.
 enum RayEnd {
     /// The ray leaves D between the portal and this support plane, at most the tolerance apart.
-    Converged(Portal, SupportPlane),
+    Converged(RayPortal, SupportPlane),
     /// The shortcut of Algorithm 5: the support value of this plane is at most the
     /// distance |p| to the portal along the ray.
     Shortcut(SupportPlane),
@@ -375,7 +375,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
     /// Finds a portal of the ray along `first.dir` (paper, Algorithm 1, find_portal; G. Snethen, "XenoCollide",
     /// Game Programming Gems 7). The inner `Err` is the reason if there is none. The point v0 = −d, scaled to the
     /// portal's size, takes the place of the interior point.
-    fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<Portal, RayEnd>, Stop> {
+    fn find_portal(&mut self, first: &SupportPlane) -> Result<Result<RayPortal, RayEnd>, Stop> {
         let d = first.dir;
         if is_separating(first) {
             return Err(Stop::Separated(first.direction()));
@@ -393,7 +393,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         }
         // T(v2, v1) = side · v2 · |v1 × d| > 0. With the two in this order, a third
         // point beyond the plane (v0, v1, v2) completes the portal.
-        let mut portal = Portal {
+        let mut portal = RayPortal {
             ray: d,
             planes: [second, *first, *first],
         };
@@ -424,7 +424,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         &mut self,
         first: &SupportPlane,
         m: &Vec3,
-    ) -> Result<Result<Portal, RayEnd>, Stop> {
+    ) -> Result<Result<RayPortal, RayEnd>, Stop> {
         if is_separating(first) {
             return Err(Stop::Separated(first.direction()));
         }
@@ -439,11 +439,11 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
         } else {
             (other, *first)
         };
-        Ok(Ok(Portal::segment(first.dir, left, right, m)))
+        Ok(Ok(RayPortal::segment(first.dir, left, right, m)))
     }
 
     /// Refines a portal: the loop of Algorithms 1 and 5.
-    fn refine(&mut self, mut portal: Portal) -> Result<RayEnd, Stop> {
+    fn refine(&mut self, mut portal: RayPortal) -> Result<RayEnd, Stop> {
         while self.take_iteration() {
             // Without a normal along the ray the three points are on a line within rounding,
             // and the portal cannot be refined further.
@@ -483,7 +483,7 @@ impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
                     } else {
                         (left, plane)
                     };
-                    portal = Portal::segment(portal.ray, left, right, m);
+                    portal = RayPortal::segment(portal.ray, left, right, m);
                 }
             }
         }

@@ -298,7 +298,7 @@ mod portal {
     }
 
     /// Returns whether the ray crosses the portal: none of the three products T is negative by more than rounding.
-    fn crosses(p: &Portal) -> bool {
+    fn crosses(p: &RayPortal) -> bool {
         let [a, b, c] = p.planes.each_ref().map(|x| &x.point.v);
         [(a, b), (b, c), (c, a)]
             .iter()
@@ -306,7 +306,7 @@ mod portal {
     }
 
     /// Returns the parameters at which the ray crosses the plane of the portal and the support plane.
-    fn reaches(p: &Portal, plane: &SupportPlane) -> (f64, f64) {
+    fn reaches(p: &RayPortal, plane: &SupportPlane) -> (f64, f64) {
         let along = plane.dir.dot(&p.ray);
         (
             plane.dir.dot(&p.planes[0].point.v) / along,
