@@ -12,8 +12,9 @@
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
-//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron; if the polytope does not come to contain the
-//!    origin, or rounding ends it, from a tetrahedron of GJK, then from one of four wide directions. Full buffers are replaced by larger ones.
+//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, where a support point replaces a center near the
+//!    origin; if the polytope does not come to contain the origin, or rounding ends it, from a
+//!    tetrahedron of GJK, then from one of four wide directions. Full buffers are replaced by larger ones.
 //! 6. *Direction*: up to four more directions where the bounds differ by more than the tolerance ([`crate::epa::direction`]).
 //! 7. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
@@ -46,7 +47,7 @@ use crate::math::Vec3;
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
 use crate::portal::{FAR_UPPER_REL, Portal};
 use crate::types::{Solution, Status};
@@ -204,10 +205,6 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
         portal: Option<&Portal>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<(Proof, Status), Stop> {
-        let interior = Vertex {
-            w: self.interior.v,
-            pair: VertexPair::INTERIOR,
-        };
         // The proof with the least gap.
         let mut best: Option<Proof> = None;
         for attempt in 0..3 {
@@ -217,7 +214,7 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             let dir = self.query.upper.dir;
             let start = match (attempt, portal) {
                 (0, None) => continue,
-                (0, Some(Portal { corners: [a, b, c] })) => [interior, *a, *b, *c],
+                (0, Some(Portal { corners: [a, b, c] })) => [self.find_apex(set)?, *a, *b, *c],
                 (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
                 _ => match self.find_wide_tetrahedron(set, &dir)? {
                     Some(start) => start,

@@ -8,7 +8,7 @@ use crate::epa::penetration::EpaSolver;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled};
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::Stop;
-use crate::minkowski::vertex_set::{Vertex, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::portal::{NearRay, Portal, WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 
@@ -101,6 +101,25 @@ impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
             &self.request.limits.gap,
         )?;
         Ok(Some(portal))
+    }
+
+    /// Step 5. Returns the fourth corner of the tetrahedron of the portal: the interior point; in place of a center that is closer
+    /// to the origin along the direction of the upper bound than that bound, the support point opposite to it: the polytope
+    /// will reach all around the origin.
+    pub(super) fn find_apex(
+        &mut self,
+        set: &mut VertexSet<SMALL_VERTICES>,
+    ) -> Result<Vertex, Stop> {
+        let dir = self.query.upper.dir;
+        let center = self.request.center;
+        let is_central = center.is_some_and(|c| -c.v.dot(&dir) < self.query.upper.depth);
+        if is_central && !set.is_full() {
+            return Ok(self.query.evaluate(set, &-dir)?.vertex());
+        }
+        Ok(Vertex {
+            w: self.interior.v,
+            pair: VertexPair::INTERIOR,
+        })
     }
 
     /// Step 5. Returns the tetrahedron with which GJK, from unit `dir`, proves the overlap.
