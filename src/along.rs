@@ -55,7 +55,7 @@ struct Ray<'r, 'q, A, B, const N: usize> {
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
-pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
+pub fn depth_along<A: SupportMap, B: SupportMap, const N: usize>(
     md: &MinkowskiDifference<A, B>,
     set: &mut VertexSet<N>,
     dir: &Vec3,
@@ -221,7 +221,7 @@ mod tests {
             ..Settings::new(tolerance)
         };
         let mut set = VertexSet::<16>::EMPTY;
-        penetration(md, &mut set, dir, &settings).expect("the origin is inside")
+        depth_along(md, &mut set, dir, &settings).expect("the origin is inside")
     }
 
     /// Checks the bounds of a hit against the distance `exact` at which the ray leaves D; that the depth is the parameter
@@ -407,7 +407,7 @@ mod tests {
             let way = r.direction();
             let md = alone(hull(&placed(&corners(half), &r.rotation(), way * 3.0)));
             let mut set = VertexSet::<16>::EMPTY;
-            match penetration(&md, &mut set, &-way, &settings) {
+            match depth_along(&md, &mut set, &-way, &settings) {
                 Err(Stop::Separated(Direction { n, .. })) => {
                     assert!(n.dot(&md.support(&n).unwrap().v) <= 0.0)
                 }

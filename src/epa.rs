@@ -6,7 +6,7 @@
 //!
 //! | file | contents |
 //! |---|---|
-//! | [`penetration`] | the driver; its head lists the steps of the global query |
+//! | [`global_minimum`] | the driver; its head lists the steps of the global query |
 //! | [`expand`] | the loop that expands the polytope |
 //! | [`buffers`] | the buffers of both, in three sizes |
 //! | [`direction`] | the last refinement of the direction of a result |
@@ -16,6 +16,6 @@
 pub mod buffers;
 pub mod direction;
 pub mod expand;
-pub mod penetration;
+pub mod global_minimum;
 pub mod polytope;
 pub mod witness;

@@ -7,9 +7,9 @@
 //! | file | contents |
 //! |---|---|
 //! | [`simplex`] | the simplex and its closest feature to the origin |
-//! | [`intersect`] | the intersection test; the proof of an overlap from known vertices |
+//! | [`overlap`] | the intersection test; the proof of an overlap from known vertices |
 //! | [`closest_points`] | the distance, with a lower and an upper bound, and the closest points |
 
 pub mod closest_points;
-pub mod intersect;
+pub mod overlap;
 pub mod simplex;

@@ -92,7 +92,7 @@ pub mod internals {
     pub use crate::math::Vec3;
     pub use crate::minkowski::support::MinkowskiDifference;
     pub use crate::paper::gao::Until;
-    pub use crate::paper::gao::penetration as incremental;
+    pub use crate::paper::gao::incremental_minimum as incremental;
     pub use crate::types::Settings;
 
     /// The exported C functions.

@@ -38,7 +38,7 @@
 
 use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
-use crate::gjk::intersect::contains_origin;
+use crate::gjk::overlap::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
@@ -126,7 +126,7 @@ struct Walk<'w, 'q, A, B, const N: usize> {
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
-pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
+pub fn local_minimum<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
     set: &mut VertexSet<N>,
     start: &Direction,
@@ -148,7 +148,7 @@ pub fn penetration<A: SupportMap, B: SupportMap, const N: usize>(
         iterations: 0,
     };
     let ray = walk.start(start)?;
-    walk.run(ray)
+    walk.walk(ray)
 }
 
 impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
@@ -172,7 +172,7 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
     }
 
     /// Walks from ray to ray until a minimum is confirmed, and proves the overlap.
-    fn run(&mut self, mut ray: Vec3) -> Result<Solution, Stop> {
+    fn walk(&mut self, mut ray: Vec3) -> Result<Solution, Stop> {
         for _ in 0..MAX_STEPS {
             if let Some(status) = self.limit() {
                 return Ok(self.upper_bound(status));
@@ -609,7 +609,7 @@ mod tests {
         let mut query = SupportQuery::new(md, center.as_ref(), 0.0);
         let mut set = VertexSet::<MAX_WALK_POINTS>::EMPTY;
         let start = Direction::exact(*start);
-        let found = penetration(&mut query, &mut set, &start, settings);
+        let found = local_minimum(&mut query, &mut set, &start, settings);
         (found, md.supports() - before)
     }
 

@@ -22,9 +22,9 @@ use core::hint::black_box;
 use crate::along;
 use crate::contact::center_of_pressure::contact_position;
 use crate::epa::buffers::{Arena, MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
-use crate::epa::penetration::EpaRequest;
+use crate::epa::global_minimum::EpaRequest;
 use crate::epa::{self, expand::EpaLimits};
-use crate::gjk::intersect::{CAPACITY, contains_origin, intersect};
+use crate::gjk::overlap::{CAPACITY, contains_origin, overlap};
 use crate::local;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::general_position::MAX_TILT_RAD;
@@ -274,7 +274,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(always)]
     fn intersect(&self, state: &mut WarmStart) -> Result<Solution, Stop> {
         let first = self.start(state, state.is_overlap());
-        let dir = intersect(&self.difference, self.centers.as_ref(), &first)?;
+        let dir = overlap(&self.difference, self.centers.as_ref(), &first)?;
         // A state with a depth, from a penetration query, is more useful: keep it.
         if !(state.is_overlap() && state.depth > 0.0) {
             *state = WarmStart::towards(Direction::remembered(dir, true));
@@ -317,7 +317,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let tolerance = self.settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        let mut found = local::penetration(&mut query, &mut set, &start, &self.settings);
+        let mut found = local::local_minimum(&mut query, &mut set, &start, &self.settings);
         if let Ok(hit) = &mut found {
             *state = WarmStart::hit(hit);
             if hit.status == Status::Converged && self.settings.pos {
@@ -346,7 +346,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         let tolerance = settings.tolerance;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
         let mut set = VertexSet::<{ local::MAX_WALK_POINTS }>::EMPTY;
-        let found = local::penetration(&mut query, &mut set, &hit.direction(), &settings);
+        let found = local::local_minimum(&mut query, &mut set, &hit.direction(), &settings);
         let Some(found) = if_overlapping(found)? else {
             return Ok(false);
         };
@@ -378,7 +378,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(never)]
     fn along(&self, dir: &Vec3, state: &mut WarmStart) -> Result<Solution, Stop> {
         let mut set = VertexSet::EMPTY;
-        let mut hit = along::penetration(&self.difference, &mut set, dir, &self.settings)?;
+        let mut hit = along::depth_along(&self.difference, &mut set, dir, &self.settings)?;
         self.prove_overlap(&mut hit, &mut set, false)?;
         *state = WarmStart::towards(hit.direction());
         hit.pos = hit.middle();
@@ -400,7 +400,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..self.settings
         };
         let until = Until::Shortcut;
-        let mut hit = gao::penetration(&self.difference, start.n, plane, until, &settings, |_| ())?;
+        let mut hit =
+            gao::incremental_minimum(&self.difference, start.n, plane, until, &settings, |_| ())?;
         let mut set = VertexSet::EMPTY;
         let scale = self.prove_overlap(&mut hit, &mut set, plane.is_some())?;
         *state = WarmStart::towards(hit.direction());
@@ -453,7 +454,8 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
         arena: Option<&mut dyn Arena>,
     ) -> Result<Solution, Stop> {
         let mut set = VertexSet::EMPTY;
-        let mut hit = epa::penetration::penetration(query, first, request, arena, &mut set, state)?;
+        let mut hit =
+            epa::global_minimum::global_minimum(query, first, request, arena, &mut set, state)?;
         *state = WarmStart::hit(&hit);
         if hit.status == Status::Converged {
             if self.settings.pos {

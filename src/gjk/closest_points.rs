@@ -19,7 +19,7 @@
 //! Outputs, valid for every [`Status`]: `lower` is a bound along `normal`; `upper` is the distance
 //! of the two points. `is_inside`: the origin is in the simplex, and the points coincide.
 
-use crate::gjk::intersect::{CAPACITY, OverlapProof};
+use crate::gjk::overlap::{CAPACITY, OverlapProof};
 use crate::gjk::simplex::Simplex;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
@@ -92,7 +92,7 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
         is_inside: false,
     };
     let before = search.query.support_points();
-    let status = search.run(goal, start)?;
+    let status = search.approach(goal, start)?;
     search.query.confirm_upper()?;
     let (point1, point2) = search.points();
     let iterations = search.query.support_points() - before;
@@ -139,7 +139,7 @@ impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
     }
 
     /// Runs the search.
-    fn run(&mut self, goal: &Goal, start: &Direction) -> Result<Status, Fault> {
+    fn approach(&mut self, goal: &Goal, start: &Direction) -> Result<Status, Fault> {
         trace::stage("closest points");
         let first = self
             .query

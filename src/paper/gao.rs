@@ -52,7 +52,7 @@ const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 ///
 /// # Errors
 /// `Stop::Separated`; `Stop::Fault` for a point that is not finite.
-pub fn penetration<A: SupportMap, B: SupportMap>(
+pub fn incremental_minimum<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     start: Vec3,
     plane_normal: Option<Vec3>,

@@ -18,7 +18,7 @@ mod search {
         shortcut: Until,
         switched: impl FnMut(f64),
     ) -> Solution {
-        let hit = penetration(md, start, None, shortcut, &SETTINGS, switched).unwrap();
+        let hit = incremental_minimum(md, start, None, shortcut, &SETTINGS, switched).unwrap();
         assert_eq!(hit.status, Status::Converged);
         hit
     }
@@ -37,7 +37,8 @@ mod search {
                 ellipsoid(radii, turn, turn * at)
             };
             let md = difference(flat(), flat());
-            let found = penetration(&md, Vec3::x(), None, Until::Shortcut, &SETTINGS, |_| ());
+            let found =
+                incremental_minimum(&md, Vec3::x(), None, Until::Shortcut, &SETTINGS, |_| ());
             assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
         }
     }
@@ -254,7 +255,8 @@ mod search {
                 ..Settings::new(1e-9)
             };
             let start = r.direction();
-            let hit = penetration(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap();
+            let hit =
+                incremental_minimum(&md, start, None, Until::Shortcut, &settings, |_| ()).unwrap();
             assert_eq!(hit.status, Status::IterationLimit);
             assert!(hit.iterations <= max_iterations);
             let h = hit.dir.dot(&md.support(&hit.dir).unwrap().v);
@@ -451,13 +453,13 @@ mod planar {
         (turn, x, y, m, at)
     }
 
-    fn penetration<A: SupportMap, B: SupportMap>(
+    fn incremental_minimum<A: SupportMap, B: SupportMap>(
         md: &MinkowskiDifference<A, B>,
         m: &Vec3,
         start: Vec3,
         settings: &Settings,
     ) -> Result<Solution, Stop> {
-        super::super::penetration(md, start, Some(*m), Until::Shortcut, settings, |_| ())
+        super::super::incremental_minimum(md, start, Some(*m), Until::Shortcut, settings, |_| ())
     }
 
     fn solve<A: SupportMap, B: SupportMap>(
@@ -465,7 +467,7 @@ mod planar {
         m: &Vec3,
         start: Vec3,
     ) -> Solution {
-        let hit = penetration(md, m, start, &SETTINGS).unwrap();
+        let hit = incremental_minimum(md, m, start, &SETTINGS).unwrap();
         let ulps = 100.0 * EPSILON;
         assert_eq!(hit.status, Status::Converged);
         assert!(hit.dir.dot(m).abs() < ulps, "leaves the plane");
@@ -577,7 +579,7 @@ mod planar {
             let md = difference(hull(&square(at)), hull(&square(at + by)));
             let angle = r.within(0.0, TAU);
             let start = x * angle.cos() + y * angle.sin();
-            match penetration(&md, &m, start, &SETTINGS) {
+            match incremental_minimum(&md, &m, start, &SETTINGS) {
                 Err(Stop::Separated(Direction { n, .. })) => {
                     assert!(n.dot(&m).abs() < 100.0 * EPSILON);
                     assert!(n.dot(&md.support(&n).unwrap().v) < 0.0);

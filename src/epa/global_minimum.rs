@@ -40,9 +40,9 @@ use crate::epa::buffers::{
     Arena, EpaBuffers, LARGE_FACES, LARGE_VERTICES, SMALL_FACES, SMALL_VERTICES, START_VERTICES,
 };
 use crate::epa::expand::{EpaLimits, Expansion, expand};
-use crate::epa::penetration::result::Proof;
+use crate::epa::global_minimum::result::Proof;
 use crate::epa::polytope::EpaPolytope;
-use crate::gjk::intersect::{CAPACITY, OverlapProof, contains_origin};
+use crate::gjk::overlap::{CAPACITY, OverlapProof, contains_origin};
 use crate::math::Vec3;
 use crate::minkowski::sphere_fit::SphereFit;
 use crate::minkowski::support::{SupportMap, SupportPoint};
@@ -94,7 +94,7 @@ struct EpaSolver<'q, 'm, A, B> {
 /// # Errors
 /// [`Stop::Separated`]: the objects are separated, or in contact within rounding. [`Stop::Fault`].
 #[inline(always)]
-pub fn penetration<A: SupportMap, B: SupportMap>(
+pub fn global_minimum<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
     first: &SupportPoint,
     request: &EpaRequest<'_>,
@@ -396,7 +396,7 @@ mod tests {
         let first = query.evaluate_first(&Direction::exact(request.ray))?;
         let mut set = VertexSet::EMPTY;
         let cold = WarmStart::COLD;
-        penetration(&mut query, &first, &request, arena, &mut set, &cold)
+        global_minimum(&mut query, &first, &request, arena, &mut set, &cold)
     }
 
     /// Returns a point as the difference of the centers of an object there and one at the origin.
@@ -679,7 +679,7 @@ mod tests {
             };
             let mut set = VertexSet::EMPTY;
             let cold = WarmStart::COLD;
-            let hit = penetration(&mut query, &first, &request, None, &mut set, &cold);
+            let hit = global_minimum(&mut query, &first, &request, None, &mut set, &cold);
             if let Ok(hit) = hit {
                 sum += (hit.point1 - hit.point2 - hit.dir * hit.depth).norm();
                 count += 1.0;

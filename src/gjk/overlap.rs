@@ -98,20 +98,20 @@ fn points_of<const N: usize>(
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
 #[inline(always)]
-pub fn intersect<A: SupportMap, B: SupportMap>(
+pub fn overlap<A: SupportMap, B: SupportMap>(
     md: &MinkowskiDifference<A, B>,
     center: Option<&SupportPoint>,
     first: &Direction,
 ) -> Result<Vec3, Stop> {
     let mut query = SupportQuery::new(md, center, f64::INFINITY);
     let point = query.evaluate_first(first)?;
-    intersect_after_first(&mut query, center, &point)?;
+    overlap_after_first(&mut query, center, &point)?;
     Ok(query.upper.dir)
 }
 
-/// Continues [`intersect`] if the first direction does not separate.
+/// Continues [`overlap`] if the first direction does not separate.
 #[inline(never)]
-fn intersect_after_first<A: SupportMap, B: SupportMap>(
+fn overlap_after_first<A: SupportMap, B: SupportMap>(
     query: &mut SupportQuery<'_, A, B>,
     center: Option<&SupportPoint>,
     first: &SupportPoint,
@@ -142,7 +142,7 @@ fn intersect_after_first<A: SupportMap, B: SupportMap>(
 /// suffices. A full set is compacted: indices change.
 ///
 /// # Errors
-/// As [`intersect`].
+/// As [`overlap`].
 #[inline(never)]
 pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
     query: &mut SupportQuery<'_, A, B>,
@@ -390,7 +390,7 @@ mod tests {
         md: &MinkowskiDifference<A, B>,
         first: &Vec3,
     ) -> Result<Vec3, Stop> {
-        intersect(md, None, &Direction::exact(*first))
+        overlap(md, None, &Direction::exact(*first))
     }
 
     /// Tests that the corners of the portal and the interior point enclose the origin.
@@ -483,7 +483,7 @@ mod tests {
             v2: at,
         };
         let first = at.normalize();
-        let found = intersect(&md, Some(&c), &Direction::exact(first));
+        let found = overlap(&md, Some(&c), &Direction::exact(first));
         assert!(matches!(found, Err(Stop::Separated(_))), "{found:?}");
     }
 
@@ -584,20 +584,19 @@ mod tests {
                     let at = up * (2.0 * size.z + gap) + by;
                     let other: Vec<_> = cube.iter().map(|p| p + at).collect();
                     let md = difference(hull(&cube), hull(&other));
-                    let found =
-                        intersect(&md, Some(&center(at)), &Direction::exact(at.normalize()));
+                    let found = overlap(&md, Some(&center(at)), &Direction::exact(at.normalize()));
                     assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
                     assert!(md.supports() < 100, "{}", md.supports());
                 }
                 let at = up * (1.5 + gap);
                 let md = difference(ball(Vec3::zeros(), 1.0), ball(at, 0.5));
-                let found = intersect(&md, Some(&center(at)), &Direction::exact(up));
+                let found = overlap(&md, Some(&center(at)), &Direction::exact(up));
                 assert_eq!(found.is_ok(), gap < 0.0, "{gap}");
             }
         }
         // Concentric balls.
         let md = difference(ball(Vec3::zeros(), 1.0), ball(Vec3::zeros(), 0.5));
-        let found = intersect(
+        let found = overlap(
             &md,
             Some(&SupportPoint::default()),
             &Direction::exact(Vec3::x()),

@@ -5,7 +5,7 @@
 
 use crate::epa::buffers::SMALL_VERTICES;
 use crate::epa::direction::refine_direction;
-use crate::epa::penetration::EpaSolver;
+use crate::epa::global_minimum::EpaSolver;
 use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, max_foot_distance2, witness_points};
 use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};

@@ -4,7 +4,7 @@
 //! The interior point, the portal, and the tetrahedra from which polytopes start: steps 2, 3 and 5 of the global query.
 
 use crate::epa::buffers::SMALL_VERTICES;
-use crate::epa::penetration::EpaSolver;
+use crate::epa::global_minimum::EpaSolver;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled};
 use crate::minkowski::support::{SupportMap, SupportPoint};
 use crate::minkowski::support_query::Stop;
