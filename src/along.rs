@@ -25,7 +25,7 @@
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::geometry::barycentric;
 use crate::math::{Vec3, larger, lesser, normal};
-use crate::minkowski::support::{self, MinkowskiDifference, SupportMap};
+use crate::minkowski::support::{self, Difference};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
@@ -38,8 +38,8 @@ use crate::types::{Direction, Settings, Solution, Status};
 const MIN_TOLERANCE_ROUNDINGS: f64 = 4.0;
 
 /// The search along a ray.
-struct Ray<'r, 'q, A, B, const N: usize> {
-    query: SupportQuery<'q, A, B>,
+struct Ray<'r, 'q, D, const N: usize> {
+    query: SupportQuery<'q, D>,
     set: &'r mut VertexSet<N>,
     /// Unit.
     dir: Vec3,
@@ -55,8 +55,8 @@ struct Ray<'r, 'q, A, B, const N: usize> {
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
-pub fn depth_along<A: SupportMap, B: SupportMap, const N: usize>(
-    md: &MinkowskiDifference<A, B>,
+pub fn depth_along<D: Difference, const N: usize>(
+    md: &D,
     set: &mut VertexSet<N>,
     dir: &Vec3,
     settings: &Settings,
@@ -87,7 +87,7 @@ pub fn depth_along<A: SupportMap, B: SupportMap, const N: usize>(
     Ok(ray.result(&portal, lower))
 }
 
-impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
+impl<D: Difference, const N: usize> Ray<'_, '_, D, N> {
     /// Returns the upper bound, metres.
     fn upper(&self) -> f64 {
         self.exit_plane.depth / self.dir.dot(&self.exit_plane.dir)
@@ -202,20 +202,21 @@ impl<A: SupportMap, B: SupportMap, const N: usize> Ray<'_, '_, A, B, N> {
 mod tests {
     use super::*;
     use crate::math::EPSILON;
+    use crate::minkowski::support::{MinkowskiDifference, SupportMap};
     use crate::test_shapes::{
         Random, Rotation, Shape, ball, corners, difference, ellipsoid, hull, placed,
     };
 
     const ULPS: f64 = 256.0 * EPSILON;
 
-    type Difference<'a> = MinkowskiDifference<Shape<'a>, Shape<'a>>;
+    type Body<'a> = MinkowskiDifference<Shape<'a>, Shape<'a>>;
 
     /// Returns a D that is this shape.
-    fn alone<'a>(shape: impl SupportMap + 'a) -> Difference<'a> {
+    fn alone<'a>(shape: impl SupportMap + 'a) -> Body<'a> {
         difference(shape, |_: &Vec3| Vec3::zeros())
     }
 
-    fn along(md: &Difference, dir: &Vec3, tolerance: f64, max_iterations: u64) -> Solution {
+    fn along(md: &Body, dir: &Vec3, tolerance: f64, max_iterations: u64) -> Solution {
         let settings = Settings {
             max_iterations,
             ..Settings::new(tolerance)
@@ -226,7 +227,7 @@ mod tests {
 
     /// Checks the bounds of a hit against the distance `exact` at which the ray leaves D; that the depth is the parameter
     /// of the support plane of `normal`; and that the witness points are on the ray.
-    fn check(md: &Difference, hit: &Solution, exact: f64, tolerance: f64) {
+    fn check(md: &Body, hit: &Solution, exact: f64, tolerance: f64) {
         let gap = hit.depth - hit.depth_lower;
         assert!(
             hit.depth >= exact - ULPS && hit.depth_lower <= exact + ULPS,

@@ -90,7 +90,7 @@ pub use api::{
 #[doc(hidden)]
 pub mod internals {
     pub use crate::math::Vec3;
-    pub use crate::minkowski::support::MinkowskiDifference;
+    pub use crate::minkowski::support::Difference;
     pub use crate::paper::gao::Until;
     pub use crate::paper::gao::incremental_minimum as incremental;
     pub use crate::types::Settings;

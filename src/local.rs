@@ -42,7 +42,7 @@ use crate::gjk::overlap::contains_origin;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
-use crate::minkowski::support::{self, SupportMap};
+use crate::minkowski::support::{self, Difference};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
     CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL,
@@ -99,8 +99,8 @@ struct Prediction {
 }
 
 /// The state of a walk.
-struct Walk<'w, 'q, A, B, const N: usize> {
-    query: &'w mut SupportQuery<'q, A, B>,
+struct Walk<'w, 'q, D, const N: usize> {
+    query: &'w mut SupportQuery<'q, D>,
     set: &'w mut VertexSet<N>,
     /// The portal of the ray; once it is refined, a face of the inner model.
     portal: Portal,
@@ -126,8 +126,8 @@ struct Walk<'w, 'q, A, B, const N: usize> {
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].
-pub fn local_minimum<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn local_minimum<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     start: &Direction,
     settings: &Settings,
@@ -151,7 +151,7 @@ pub fn local_minimum<A: SupportMap, B: SupportMap, const N: usize>(
     walk.walk(ray)
 }
 
-impl<A: SupportMap, B: SupportMap, const N: usize> Walk<'_, '_, A, B, N> {
+impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
     /// Evaluates the start direction, and others if it is no good start. Returns the first ray.
     fn start(&mut self, start: &Direction) -> Result<Vec3, Stop> {
         trace::stage("local search");
@@ -570,7 +570,7 @@ fn is_same(a: &Vec3, b: &Vec3) -> bool {
 mod tests {
     use super::*;
     use crate::math::{EPSILON, perpendicular};
-    use crate::minkowski::support::{Fault, MinkowskiDifference, SupportPoint};
+    use crate::minkowski::support::{Fault, SupportMap, SupportPoint};
     use crate::test_shapes::{
         Random, Rotation, ball, capsule, corners, difference, ellipsoid, hull, placed,
     };
@@ -594,8 +594,8 @@ mod tests {
     }
 
     /// Returns the result and the number of support points.
-    fn walk<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
+    fn walk<D: Difference>(
+        md: &D,
         center: Option<Vec3>,
         start: &Vec3,
         settings: &Settings,
@@ -615,11 +615,7 @@ mod tests {
 
     /// Asserts that no direction near that of the result is lower, and that the witness points are in their bodies and
     /// coincide after obj2 is moved by the depth.
-    fn check<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
-        hit: &Solution,
-        r: &mut Random,
-    ) {
+    fn check<D: Difference>(md: &D, hit: &Solution, r: &mut Random) {
         let tolerance = SETTINGS.tolerance;
         let h = |n: &Vec3| n.dot(&md.support(n).unwrap().v);
         assert!((h(&hit.dir) - hit.depth).abs() <= 64.0 * EPSILON);

@@ -28,7 +28,7 @@
 
 use crate::math::{self, Vec3, lesser, normalise_unscaled, perpendicular, tangents};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
 use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES};
@@ -100,7 +100,7 @@ pub struct PortalPlane {
 impl PortalPlane {
     /// Returns whether its distance from the origin is that of a shallow contact.
     #[inline(always)]
-    fn is_shallow<A: SupportMap, B: SupportMap>(&self, query: &SupportQuery<'_, A, B>) -> bool {
+    fn is_shallow<D: Difference>(&self, query: &SupportQuery<'_, D>) -> bool {
         let largest2 = SHALLOW_REL * SHALLOW_REL * query.scale.size2();
         self.offset * self.offset < largest2 * self.length * self.length
     }
@@ -219,7 +219,7 @@ impl Portal {
 
 /// Returns whether the upper bound is that of a shallow contact.
 #[inline(always)]
-pub fn is_shallow<A: SupportMap, B: SupportMap>(query: &SupportQuery<'_, A, B>) -> bool {
+pub fn is_shallow<D: Difference>(query: &SupportQuery<'_, D>) -> bool {
     let upper = query.upper.depth;
     upper * upper < SHALLOW_REL * SHALLOW_REL * query.scale.size2()
 }
@@ -358,8 +358,8 @@ impl OpenPortal {
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 #[inline(always)]
-pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn discover<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     ray: &Vec3,
     length: f64,
@@ -407,8 +407,8 @@ pub fn discover<A: SupportMap, B: SupportMap, const N: usize>(
 /// Evaluates the next direction of a discovery. Returns its point, or `known` if that is farther towards the ray; `None`:
 /// the set is full, or directions have failed [`MAX_FAILURES`] times before.
 #[inline(always)]
-fn evaluate_towards_ray<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+fn evaluate_towards_ray<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     open: &mut OpenPortal,
     length: f64,
@@ -437,8 +437,8 @@ fn evaluate_towards_ray<A: SupportMap, B: SupportMap, const N: usize>(
 // Cold: codegen, see README.
 #[cold]
 #[inline(never)]
-pub fn ring<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn ring<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     axis: &Vec3,
     tilt: f64,
@@ -497,8 +497,8 @@ pub fn choose_corner(corners: [Vec3; 3], ray: &Vec3, w: &Vec3) -> usize {
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 #[inline(always)]
-pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn refine<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
     ray: &Vec3,
@@ -542,7 +542,7 @@ pub fn refine<A: SupportMap, B: SupportMap, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::minkowski::support::SupportPoint;
+    use crate::minkowski::support::{SupportMap, SupportPoint};
     use crate::minkowski::tolerance::GAP_REL;
     use crate::test_shapes::{Random, ball, capsule, corners, difference, hull, placed};
 

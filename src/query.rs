@@ -29,7 +29,7 @@ use crate::local;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::general_position::MAX_TILT_RAD;
 use crate::minkowski::separating_axis::test_axis;
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support::{Difference, Fault, MinkowskiDifference, SupportMap, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::tolerance::{GAP_REL, Scale};
 use crate::minkowski::vertex_set::VertexSet;
@@ -446,7 +446,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
     #[inline(never)]
     fn minimize_from(
         &self,
-        query: &mut SupportQuery<'_, A, B>,
+        query: &mut SupportQuery<'_, MinkowskiDifference<A, B>>,
         first: &SupportPoint,
         request: &EpaRequest<'_>,
         accepts_local: bool,

@@ -50,7 +50,7 @@ use crate::contact::tilted_support::TiltedSupport;
 use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE, MAX_KNOWN};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support::{Difference, Fault, SupportPoint};
 use crate::minkowski::vertex_set::VertexSet;
 use crate::types::Solution;
 
@@ -60,8 +60,8 @@ use crate::types::Solution;
 /// # Errors
 /// [`Fault::NonFinite`].
 #[inline(never)]
-pub fn contact_position<A: SupportMap, B: SupportMap, const N: usize>(
-    md: &MinkowskiDifference<A, B>,
+pub fn contact_position<D: Difference, const N: usize>(
+    md: &D,
     set: &VertexSet<N>,
     hit: &Solution,
     centers: Option<&SupportPoint>,
@@ -99,8 +99,8 @@ fn deep_position(hit: &Solution, centers: &SupportPoint) -> (Vec3, f64) {
 
 /// Returns the center of pressure of a hit, midway between the support planes.
 #[inline(always)]
-fn center_of_pressure<A: SupportMap, B: SupportMap, const N: usize>(
-    md: &MinkowskiDifference<A, B>,
+fn center_of_pressure<D: Difference, const N: usize>(
+    md: &D,
     set: &VertexSet<N>,
     hit: &Solution,
     centers: Option<&SupportPoint>,
@@ -141,8 +141,8 @@ fn extents<const N: usize>(
 
 /// Integrates the local depth of a contact. Returns false if the deepest point is the center of pressure.
 #[inline(always)]
-fn integrate<A: SupportMap, B: SupportMap, const N: usize>(
-    support: &TiltedSupport<A, B>,
+fn integrate<D: Difference, const N: usize>(
+    support: &TiltedSupport<D>,
     smaller: usize,
     set: &VertexSet<N>,
     sum: &mut PressureSum,

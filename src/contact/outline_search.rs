@@ -25,7 +25,7 @@ use crate::contact::tilted_support::TiltedSupport;
 use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, MAX_DROP, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
-use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::support::{Difference, Fault};
 
 /// Largest number of times that a tilt is lowered.
 const MAX_CHORDS: usize = 3;
@@ -82,7 +82,7 @@ impl SideRule<'_, '_> {
     }
 }
 
-impl<A: SupportMap, B: SupportMap> TiltedSupport<'_, A, B> {
+impl<D: Difference> TiltedSupport<'_, D> {
     /// Finds the outline of an object. `face`: for the larger object its known face, with the smaller one's outline.
     ///
     /// # Errors
@@ -202,7 +202,7 @@ mod tests {
     use super::*;
     use crate::contact::frame::ContactFrame;
     use crate::contact::outline::area2;
-    use crate::minkowski::support::MinkowskiDifference;
+    use crate::minkowski::support::{MinkowskiDifference, SupportMap};
     use crate::test_shapes::{difference, hull};
     use core::cell::Cell;
     use core::f64::consts::TAU;

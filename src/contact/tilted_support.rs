@@ -11,13 +11,13 @@ use crate::contact::frame::ContactFrame;
 use crate::contact::tuning::{DROP_TOL, MAX_TILT_TAN, TILT_FACTOR, VERTEX_OFFSET_REL};
 use crate::geometry::polygon::Vec2;
 use crate::math::{EPSILON, Vec3, larger, lesser};
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::minkowski::support::{Difference, Fault};
 use crate::minkowski::vertex_set::VertexSet;
 use core::cell::Cell;
 
 /// The objects of a contact, evaluated along tilted directions.
-pub struct TiltedSupport<'q, A, B> {
-    md: &'q MinkowskiDifference<A, B>,
+pub struct TiltedSupport<'q, D> {
+    md: &'q D,
     pub frame: ContactFrame,
     /// The smaller object's extent: the distance of its center from the contact, metres; without centers that of its
     /// farthest known vertex.
@@ -39,16 +39,11 @@ pub struct TiltedSupport<'q, A, B> {
     squares: Cell<f64>,
 }
 
-impl<'q, A: SupportMap, B: SupportMap> TiltedSupport<'q, A, B> {
+impl<'q, D: Difference> TiltedSupport<'q, D> {
     /// Prepares the evaluation. The frame's origin is midway between the support planes. `extent`: of the smaller object.
     /// `gap`: the distance of the support planes, metres. `depth`: the larger of that and the tolerance, metres.
     #[inline(always)]
-    pub fn new(
-        md: &'q MinkowskiDifference<A, B>,
-        frame: ContactFrame,
-        extent: f64,
-        [gap, depth]: [f64; 2],
-    ) -> Self {
+    pub fn new(md: &'q D, frame: ContactFrame, extent: f64, [gap, depth]: [f64; 2]) -> Self {
         let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
         let cosine = cosine(tilt);
         Self {

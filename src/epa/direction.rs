@@ -18,7 +18,7 @@
 use crate::math::Vec3;
 use crate::minkowski::newton::newton_step;
 use crate::minkowski::sphere_fit::SphereFit;
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
@@ -36,8 +36,8 @@ pub const MAX_REFINEMENTS: usize = 4;
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 #[inline(never)]
-pub fn refine_direction<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn refine_direction<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     face: &mut Portal,
     lower: f64,

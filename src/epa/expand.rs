@@ -26,7 +26,7 @@ use crate::epa::direction::MAX_REFINEMENTS;
 use crate::epa::polytope::EpaPolytope;
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
 use crate::minkowski::tuning::NEGLIGIBLE_GAPS;
@@ -78,8 +78,8 @@ impl EpaLimits {
 }
 
 /// The parameters of an expansion besides its buffers, which have three sizes.
-pub struct Expansion<'e, 'm, A, B> {
-    pub query: &'e mut SupportQuery<'m, A, B>,
+pub struct Expansion<'e, 'm, D> {
+    pub query: &'e mut SupportQuery<'m, D>,
     pub fit: &'e mut SphereFit,
     /// The interior point of the query.
     pub interior: &'e Vec3,
@@ -94,8 +94,8 @@ pub struct Expansion<'e, 'm, A, B> {
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 #[inline(always)]
-pub fn expand<A: SupportMap, B: SupportMap, const N: usize, const F: usize>(
-    expansion: Expansion<'_, '_, A, B>,
+pub fn expand<D: Difference, const N: usize, const F: usize>(
+    expansion: Expansion<'_, '_, D>,
     set: &mut VertexSet<N>,
     polytope: &mut EpaPolytope<F>,
     has_larger: bool,

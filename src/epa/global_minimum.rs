@@ -45,7 +45,7 @@ use crate::epa::polytope::EpaPolytope;
 use crate::gjk::overlap::{CAPACITY, OverlapProof, contains_origin};
 use crate::math::Vec3;
 use crate::minkowski::sphere_fit::SphereFit;
-use crate::minkowski::support::{SupportMap, SupportPoint};
+use crate::minkowski::support::{Difference, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
@@ -73,8 +73,8 @@ enum Outcome {
 }
 
 /// The state of a query.
-struct EpaSolver<'q, 'm, A, B> {
-    query: &'q mut SupportQuery<'m, A, B>,
+struct EpaSolver<'q, 'm, D> {
+    query: &'q mut SupportQuery<'m, D>,
     request: &'q EpaRequest<'q>,
     /// The interior point, and the points of the objects whose difference it is.
     interior: SupportPoint,
@@ -94,8 +94,8 @@ struct EpaSolver<'q, 'm, A, B> {
 /// # Errors
 /// [`Stop::Separated`]: the objects are separated, or in contact within rounding. [`Stop::Fault`].
 #[inline(always)]
-pub fn global_minimum<A: SupportMap, B: SupportMap>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn global_minimum<D: Difference>(
+    query: &mut SupportQuery<'_, D>,
     first: &SupportPoint,
     request: &EpaRequest<'_>,
     mut arena: Option<&mut dyn Arena>,
@@ -161,7 +161,7 @@ pub fn global_minimum<A: SupportMap, B: SupportMap>(
     })
 }
 
-impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
+impl<D: Difference> EpaSolver<'_, '_, D> {
     /// Runs steps 2 to 4. Not inlined, so that its frame is released before a polytope is made.
     #[inline(never)]
     fn run_without_polytope(
@@ -350,7 +350,7 @@ mod tests {
     use super::*;
     use crate::epa::buffers::{MAX_DEFAULT_POINTS, MAX_PROVEN_POINTS};
     use crate::math::{EPSILON, normalise_unscaled};
-    use crate::minkowski::support::{Fault, MinkowskiDifference};
+    use crate::minkowski::support::{Fault, SupportMap};
     use crate::test_shapes::{Random, ball, corners, difference, ellipsoid, hull, placed};
     use crate::types::{Direction, Settings};
     use core::cell::Cell;
@@ -374,8 +374,8 @@ mod tests {
     }
 
     /// Returns the result of a cold query along the ray from `center`, or along x.
-    fn run<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
+    fn run<D: Difference>(
+        md: &D,
         center: Option<&SupportPoint>,
         max_points: u64,
         arena: Option<&mut dyn Arena>,

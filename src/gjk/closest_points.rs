@@ -23,7 +23,7 @@ use crate::gjk::overlap::{CAPACITY, OverlapProof};
 use crate::gjk::simplex::Simplex;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
 use crate::minkowski::sphere_fit::SphereFit;
-use crate::minkowski::support::{self, Fault, SupportMap};
+use crate::minkowski::support::{self, Difference, Fault};
 use crate::minkowski::support_query::SupportQuery;
 use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL, MIN_GAIN_GAPS};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
@@ -75,8 +75,8 @@ pub struct ClosestPoints {
 /// # Errors
 /// [`Fault::NonFinite`].
 #[inline(always)]
-pub fn closest_points<A: SupportMap, B: SupportMap>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn closest_points<D: Difference>(
+    query: &mut SupportQuery<'_, D>,
     fit: &mut SphereFit,
     start: &Direction,
     goal: &Goal,
@@ -110,8 +110,8 @@ pub fn closest_points<A: SupportMap, B: SupportMap>(
 }
 
 /// State of a search.
-struct ClosestPointsSearch<'s, 'q, A, B> {
-    query: &'s mut SupportQuery<'q, A, B>,
+struct ClosestPointsSearch<'s, 'q, D> {
+    query: &'s mut SupportQuery<'q, D>,
     fit: &'s mut SphereFit,
     set: VertexSet<CAPACITY>,
     simplex: Simplex,
@@ -126,7 +126,7 @@ struct ClosestPointsSearch<'s, 'q, A, B> {
     is_inside: bool,
 }
 
-impl<A: SupportMap, B: SupportMap> ClosestPointsSearch<'_, '_, A, B> {
+impl<D: Difference> ClosestPointsSearch<'_, '_, D> {
     /// Returns the closest points; if the origin is in the simplex, two coincident points of the objects.
     fn points(&self) -> (Vec3, Vec3) {
         let point = |corner: Vertex| self.set.point(corner.pair);

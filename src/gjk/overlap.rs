@@ -28,7 +28,7 @@
 use crate::geometry::barycentric;
 use crate::gjk::simplex::Simplex;
 use crate::math::{EPSILON, Vec3, larger, lesser, normal, perpendicular, unit};
-use crate::minkowski::support::{self, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support::{self, Difference, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::TRIPLE_PRODUCT_ULPS;
 use crate::minkowski::tuning::MAX_FAILURES;
@@ -98,8 +98,8 @@ fn points_of<const N: usize>(
 /// # Errors
 /// [`Stop::Separated`]; [`Stop::Fault`] for a point that is not finite.
 #[inline(always)]
-pub fn overlap<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
+pub fn overlap<D: Difference>(
+    md: &D,
     center: Option<&SupportPoint>,
     first: &Direction,
 ) -> Result<Vec3, Stop> {
@@ -111,8 +111,8 @@ pub fn overlap<A: SupportMap, B: SupportMap>(
 
 /// Continues [`overlap`] if the first direction does not separate.
 #[inline(never)]
-fn overlap_after_first<A: SupportMap, B: SupportMap>(
-    query: &mut SupportQuery<'_, A, B>,
+fn overlap_after_first<D: Difference>(
+    query: &mut SupportQuery<'_, D>,
     center: Option<&SupportPoint>,
     first: &SupportPoint,
 ) -> Result<(), Stop> {
@@ -144,8 +144,8 @@ fn overlap_after_first<A: SupportMap, B: SupportMap>(
 /// # Errors
 /// As [`overlap`].
 #[inline(never)]
-pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn contains_origin<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     center: Option<&SupportPoint>,
     dir: &Vec3,
@@ -212,8 +212,8 @@ pub fn contains_origin<A: SupportMap, B: SupportMap, const N: usize>(
 /// unit `dir`, as close to the origin as [`MIN_END_FRACTION`] allows. Evaluates `dir`, and the direction from the
 /// point to the origin.
 #[inline(never)]
-fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+fn find_interior<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     from: &SupportPoint,
     dir: &Vec3,
@@ -237,8 +237,8 @@ fn find_interior<A: SupportMap, B: SupportMap, const N: usize>(
 /// Returns a portal of the ray from a point of D, `inner`, through the origin that has the origin on its inner
 /// side; `None` if none is found. `is_inside`: the point is in the interior of D; otherwise it may be on the surface.
 #[inline(always)]
-fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+fn find_enclosing_portal<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     inner: &Vec3,
     is_inside: bool,
@@ -305,8 +305,8 @@ fn find_enclosing_portal<A: SupportMap, B: SupportMap, const N: usize>(
 ///
 /// # Errors
 /// [`Stop::Separated`]: the normal separates; [`Stop::Fault`].
-fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+fn has_points_around<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     portal: &mut Portal,
     inner: &Vec3,
@@ -338,8 +338,8 @@ fn has_points_around<A: SupportMap, B: SupportMap, const N: usize>(
 /// [`OverlapProof::Undecided`], with the simplex, if no portal is found: D is not flat then.
 #[cold]
 #[inline(never)]
-fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+fn resolve_by_portal<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     mut corners: [Vertex; 4],
     center: Option<&SupportPoint>,
@@ -361,8 +361,8 @@ fn resolve_by_portal<A: SupportMap, B: SupportMap, const N: usize>(
 
 /// Evaluates directions of which one separates if D is flat: one perpendicular to `inner`, a point of D, and both
 /// normals of the plane through the origin, `inner` and the first one's support point.
-fn evaluate_normals_of_flat<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+fn evaluate_normals_of_flat<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     inner: &Vec3,
 ) -> Result<(), Stop> {
@@ -386,10 +386,7 @@ mod tests {
     use crate::math::EPSILON;
     use crate::test_shapes::{Random, ball, corners, difference, hull, placed};
 
-    fn test_cold<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
-        first: &Vec3,
-    ) -> Result<Vec3, Stop> {
+    fn test_cold<D: Difference>(md: &D, first: &Vec3) -> Result<Vec3, Stop> {
         overlap(md, None, &Direction::exact(*first))
     }
 

@@ -18,7 +18,7 @@
 //! one for the next query; if none separated it is only a guess.
 
 use crate::math::{Vec3, unit};
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap};
+use crate::minkowski::support::{Difference, Fault};
 use crate::minkowski::tolerance::Scale;
 use crate::minkowski::tuning::MAX_FAILURES;
 use crate::trace;
@@ -34,10 +34,7 @@ const TARGET_REL: f64 = 0.0035;
 /// # Errors
 /// [`Fault::NonFinite`].
 #[inline(always)]
-pub fn test_axis<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    axis: &mut Vec3,
-) -> Result<bool, Fault> {
+pub fn test_axis<D: Difference>(md: &D, axis: &mut Vec3) -> Result<bool, Fault> {
     trace::stage("separating axis");
     let mut scale = Scale::default();
     for _ in 0..MAX_FAILURES {

@@ -26,7 +26,7 @@
 
 use crate::geometry::barycentric;
 use crate::math::{EPSILON, Vec3, larger, lesser, normalise_unscaled};
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
     CONFIRM_RANGE_RAD, MAX_FAILURES, MAX_MISS_REL, MIN_GAIN_GAPS, SMOOTH_REL_TOL,
@@ -507,8 +507,8 @@ fn fit_radii(first: &FitSample, second: &FitSample, tolerance: f64) -> [f64; 2] 
 /// # Errors
 /// As [`SupportQuery::evaluate`].
 #[inline(always)]
-pub fn evaluate_beyond<A: SupportMap, B: SupportMap, const N: usize>(
-    query: &mut SupportQuery<'_, A, B>,
+pub fn evaluate_beyond<D: Difference, const N: usize>(
+    query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     fit: &mut SphereFit,
     corners: impl FnOnce(&VertexSet<N>) -> [Vertex; 3],
@@ -565,7 +565,7 @@ mod tests {
 
     /// Evaluates three directions around x.
     fn corners_around_x(
-        query: &mut SupportQuery<'_, Shape<'static>, Shape<'static>>,
+        query: &mut SupportQuery<'_, Balls>,
         set: &mut VertexSet<24>,
     ) -> [Vertex; 3] {
         [[0.4, 0.0], [-0.2, 0.3], [-0.2, -0.3]].map(|[y, z]| {

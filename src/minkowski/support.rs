@@ -104,6 +104,30 @@ pub struct MinkowskiDifference<A, B> {
     is_contradicted: Cell<bool>,
 }
 
+/// The Minkowski difference of two objects, by what queries ask of it.
+pub trait Difference {
+    /// Returns the support point of D along `dir` (unit, finite). Evaluates obj1 along `dir`, then
+    /// obj2 along `-dir`.
+    ///
+    /// # Errors
+    /// `Fault::NonFinite`.
+    fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault>;
+
+    /// Returns the support point of one object for direction `dir` of D: of obj1 along `dir` if `object` is
+    /// 0, else of obj2 along `-dir`. It is not tested for finite coordinates.
+    fn support_of_object(&self, object: usize, dir: &Vec3) -> Vec3;
+
+    /// Returns whether a query has noted a contradiction.
+    fn is_contradicted(&self) -> bool;
+
+    /// Notes that two points contradict each other: a support function is wrong in a direction that was evaluated as it
+    /// is, so that later queries tilt all directions.
+    fn note_contradiction(&self);
+
+    /// Returns the number of support points evaluated: half the number of calls, rounded up.
+    fn supports(&self) -> u64;
+}
+
 impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
     /// Makes the difference of two objects, without evaluations.
     pub fn new(obj1: A, obj2: B) -> Self {
@@ -114,14 +138,11 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
             is_contradicted: Cell::new(false),
         }
     }
+}
 
-    /// Returns the support point of D along `dir` (unit, finite). Evaluates obj1 along `dir`, then
-    /// obj2 along `-dir`.
-    ///
-    /// # Errors
-    /// `Fault::NonFinite`.
+impl<A: SupportMap, B: SupportMap> Difference for MinkowskiDifference<A, B> {
     #[inline]
-    pub fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
+    fn support(&self, dir: &Vec3) -> Result<SupportPoint, Fault> {
         self.calls.set(self.calls.get() + 2);
         let v1 = self.obj1.support(dir);
         let v2 = self.obj2.support(&-dir);
@@ -135,10 +156,8 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         Ok(SupportPoint { v, v1, v2 })
     }
 
-    /// Returns the support point of one object for direction `dir` of D: of obj1 along `dir` if `object` is
-    /// 0, else of obj2 along `-dir`. It is not tested for finite coordinates.
     #[inline]
-    pub fn support_of_object(&self, object: usize, dir: &Vec3) -> Vec3 {
+    fn support_of_object(&self, object: usize, dir: &Vec3) -> Vec3 {
         self.calls.set(self.calls.get() + 1);
         match object {
             0 => self.obj1.support(dir),
@@ -146,21 +165,17 @@ impl<A: SupportMap, B: SupportMap> MinkowskiDifference<A, B> {
         }
     }
 
-    /// Returns whether a query has noted a contradiction.
     #[inline(always)]
-    pub fn is_contradicted(&self) -> bool {
+    fn is_contradicted(&self) -> bool {
         self.is_contradicted.get()
     }
 
-    /// Notes that two points contradict each other: a support function is wrong in a direction that was evaluated as it
-    /// is, so that later queries tilt all directions.
-    pub fn note_contradiction(&self) {
+    fn note_contradiction(&self) {
         self.is_contradicted.set(true);
     }
 
-    /// Returns the number of support points evaluated: half the number of calls, rounded up.
     #[inline]
-    pub fn supports(&self) -> u64 {
+    fn supports(&self) -> u64 {
         self.calls.get().div_ceil(2)
     }
 }

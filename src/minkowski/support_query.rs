@@ -23,7 +23,7 @@
 
 use crate::math::{Vec3, from_real, larger, lesser, to_real};
 use crate::minkowski::general_position::{HAS_TILT, MAX_TILT_RAD, MIN_TILT_RAD, TiltRule};
-use crate::minkowski::support::{Fault, MinkowskiDifference, SupportMap, SupportPoint};
+use crate::minkowski::support::{Difference, Fault, SupportPoint};
 use crate::minkowski::tolerance::Scale;
 use crate::minkowski::tuning::NEGLIGIBLE_GAPS;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
@@ -110,9 +110,9 @@ impl SupportPlane {
 }
 
 /// The state of a query: the support function of one pair and the results of its evaluations.
-pub struct SupportQuery<'q, A, B> {
+pub struct SupportQuery<'q, D> {
     /// The Minkowski difference.
-    pub md: &'q MinkowskiDifference<A, B>,
+    pub md: &'q D,
     /// How directions are tilted.
     pub tilt_rule: TiltRule,
     /// The sizes of the points evaluated so far.
@@ -124,15 +124,11 @@ pub struct SupportQuery<'q, A, B> {
     pub center: Option<&'q SupportPoint>,
 }
 
-impl<'q, A: SupportMap, B: SupportMap> SupportQuery<'q, A, B> {
+impl<'q, D: Difference> SupportQuery<'q, D> {
     /// Makes a query without evaluations. `center`: the difference of trusted centers. `tolerance`: the one that the caller
     /// requested, metres.
     #[inline(always)]
-    pub fn new(
-        md: &'q MinkowskiDifference<A, B>,
-        center: Option<&'q SupportPoint>,
-        tolerance: f64,
-    ) -> Self {
+    pub fn new(md: &'q D, center: Option<&'q SupportPoint>, tolerance: f64) -> Self {
         let mut scale = Scale::default();
         if let Some(point) = center {
             scale.note(point);

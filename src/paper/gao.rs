@@ -34,7 +34,7 @@
 use crate::epa::buffers::MAX_PROVEN_POINTS;
 use crate::math::{self, EPSILON, Vec3, larger, max_abs, perpendicular, tangents, unit};
 use crate::minkowski::general_position::TiltRule;
-use crate::minkowski::support::{self, Fault, MinkowskiDifference, SupportMap};
+use crate::minkowski::support::{self, Difference, Fault};
 use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::tolerance::Scale;
 use crate::portal::choose_corner;
@@ -52,8 +52,8 @@ const PERTURBATION_TAN: (f64, f64) = (0.093, 0.041);
 ///
 /// # Errors
 /// `Stop::Separated`; `Stop::Fault` for a point that is not finite.
-pub fn incremental_minimum<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
+pub fn incremental_minimum<D: Difference>(
+    md: &D,
     start: Vec3,
     plane_normal: Option<Vec3>,
     until: Until,
@@ -89,8 +89,8 @@ pub fn incremental_minimum<A: SupportMap, B: SupportMap>(
 }
 
 /// Runs the loop of Algorithm 3. Returns `None` if the iterations are used up, or rounding ends a ray.
-fn run_algorithm_3<A: SupportMap, B: SupportMap>(
-    search: &mut RaySearch<'_, A, B>,
+fn run_algorithm_3<D: Difference>(
+    search: &mut RaySearch<'_, D>,
     mut ray: SupportPlane,
     mut on_new_ray: impl FnMut(f64),
 ) -> Result<Option<Solution>, Stop> {
@@ -169,10 +169,7 @@ fn make_result(plane: &SupportPlane, portal: Option<&RayPortal>) -> Solution {
 
 /// Evaluates the support plane along unit `dir`.
 #[inline]
-fn support_plane<A: SupportMap, B: SupportMap>(
-    md: &MinkowskiDifference<A, B>,
-    dir: Vec3,
-) -> Result<SupportPlane, Fault> {
+fn support_plane<D: Difference>(md: &D, dir: Vec3) -> Result<SupportPlane, Fault> {
     let point = md.support(&dir)?;
     let depth = dir.dot(&point.v);
     Ok(SupportPlane {
@@ -292,9 +289,9 @@ pub enum Until {
 }
 
 /// The state of a search from ray to ray. A separating direction ends it ([`Stop::Separated`]).
-struct RaySearch<'q, A, B> {
+struct RaySearch<'q, D> {
     /// The Minkowski difference.
-    md: &'q MinkowskiDifference<A, B>,
+    md: &'q D,
     /// The largest gap between the bounds, metres.
     tolerance: f64,
     /// The stop criterion.
@@ -309,7 +306,7 @@ struct RaySearch<'q, A, B> {
     best: SupportPlane,
 }
 
-impl<A: SupportMap, B: SupportMap> RaySearch<'_, A, B> {
+impl<D: Difference> RaySearch<'_, D> {
     /// Counts an iteration. Returns `false` if none was left.
     fn take_iteration(&mut self) -> bool {
         let left = self.budget > 0;

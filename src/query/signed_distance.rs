@@ -22,7 +22,7 @@ use crate::epa::buffers::Arena;
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Real, larger, lesser};
 use crate::minkowski::sphere_fit::SphereFit;
-use crate::minkowski::support::{Fault, SupportMap};
+use crate::minkowski::support::{Difference, Fault, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::warm_start::WarmStart;
 use crate::query::Pair;

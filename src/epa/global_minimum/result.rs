@@ -10,7 +10,7 @@ use crate::epa::polytope::EpaPolytope;
 use crate::epa::witness::{exit_face, max_foot_distance2, witness_points};
 use crate::geometry::plane::{PLANE_ERROR_ULPS, base_distance};
 use crate::math::{Vec3, larger};
-use crate::minkowski::support::SupportMap;
+use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportPlane};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::Portal;
@@ -36,7 +36,7 @@ pub struct Proof {
     pub is_inconsistent: bool,
 }
 
-impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
+impl<D: Difference> EpaSolver<'_, '_, D> {
     /// Steps 4 and 6. Tries to prove the minimum from the tetrahedron of interior point and portal. Returns the proof.
     #[inline(always)]
     pub(super) fn certify(

@@ -6,7 +6,7 @@
 use crate::epa::buffers::SMALL_VERTICES;
 use crate::epa::global_minimum::EpaSolver;
 use crate::math::{Vec3, larger, lesser, normalise_unscaled};
-use crate::minkowski::support::{SupportMap, SupportPoint};
+use crate::minkowski::support::{Difference, SupportPoint};
 use crate::minkowski::support_query::Stop;
 use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::portal::{NearRay, Portal, WIDEST_RING_TAN, discover, refine, ring};
@@ -26,7 +26,7 @@ const NEAR_RING_REL: f64 = 0.25;
 /// of `ccdGJKPenetration` take 5.6 support points in place of 4.3; from 6 degrees on hulls without centers take 4 to 7 % more.
 const MAX_RAY_TURN2: f64 = 0.25;
 
-impl<A: SupportMap, B: SupportMap> EpaSolver<'_, '_, A, B> {
+impl<D: Difference> EpaSolver<'_, '_, D> {
     /// Step 2. Sets the interior point to the middle of the support points along the ray and opposite to it, and `ray` to the
     /// direction from there to the origin. Returns the opposite direction and its point, which are removed from the
     /// set: as a corner the point would make the portal wide.

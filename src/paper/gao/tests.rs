@@ -12,8 +12,8 @@ mod search {
         ..Settings::new(if EPSILON < 1e-10 { 1e-7 } else { 1e-5 })
     };
 
-    fn solve<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
+    fn solve<D: Difference>(
+        md: &D,
         start: Vec3,
         shortcut: Until,
         switched: impl FnMut(f64),
@@ -141,11 +141,7 @@ mod search {
     }
 
     /// Returns whether no direction within 3 degrees is lower by more than the tolerance.
-    fn is_local_minimum<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
-        hit: &Solution,
-        r: &mut Random,
-    ) -> bool {
+    fn is_local_minimum<D: Difference>(md: &D, hit: &Solution, r: &mut Random) -> bool {
         (0..50).all(|_| {
             let n = unit(&(hit.dir + r.vector(0.03))).unwrap();
             support_plane(md, n).unwrap().depth >= hit.depth - 10.0 * SETTINGS.tolerance
@@ -269,6 +265,7 @@ mod search {
 
 mod portal {
     use super::super::*;
+    use crate::minkowski::support::{MinkowskiDifference, SupportMap};
     use crate::test_shapes::{
         Random, Rotation, Shape, corners, difference, ellipsoid, hull, placed,
     };
@@ -281,13 +278,13 @@ mod portal {
     }
 
     /// Returns a search that begins with the plane `best`.
-    fn search<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
+    fn search<D: Difference>(
+        md: &D,
         best: SupportPlane,
         tolerance: f64,
         until: Until,
         budget: u64,
-    ) -> RaySearch<'_, A, B> {
+    ) -> RaySearch<'_, D> {
         RaySearch {
             md,
             tolerance,
@@ -453,8 +450,8 @@ mod planar {
         (turn, x, y, m, at)
     }
 
-    fn incremental_minimum<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
+    fn incremental_minimum<D: Difference>(
+        md: &D,
         m: &Vec3,
         start: Vec3,
         settings: &Settings,
@@ -462,11 +459,7 @@ mod planar {
         super::super::incremental_minimum(md, start, Some(*m), Until::Shortcut, settings, |_| ())
     }
 
-    fn solve<A: SupportMap, B: SupportMap>(
-        md: &MinkowskiDifference<A, B>,
-        m: &Vec3,
-        start: Vec3,
-    ) -> Solution {
+    fn solve<D: Difference>(md: &D, m: &Vec3, start: Vec3) -> Solution {
         let hit = incremental_minimum(md, m, start, &SETTINGS).unwrap();
         let ulps = 100.0 * EPSILON;
         assert_eq!(hit.status, Status::Converged);
