@@ -99,7 +99,9 @@ static inline void set_value(answer_t *x, const shape_t *a, const shape_t *b)
 static inline double point_tolerance(const entry_t *e, const answer_t *x, const criteria_t *q)
 {
     const double allowed = entry_is_mpr(e) ? fmax(q->tol, tolerance(TOL_MPR) * x->depth) : q->tol;
-    const double reached = x->code == CCD_LIMIT || e->call == CALL_PROVEN ? fmax(allowed, x->depth - x->lower) : allowed;
+    /* The gap itself is judged (FAULT_GAP): of a hit it exceeds what is allowed only where rounding does, far from the origin. */
+    const int has_gap = x->code == CCD_LIMIT || e->call == CALL_PROVEN || e->call == CALL_PENETRATION;
+    const double reached = has_gap ? fmax(allowed, x->depth - x->lower) : allowed;
     return reached + q->noise + tolerance(TOL_WITNESS) * q->size;
 }
 
