@@ -11,7 +11,8 @@
 //!    perpendicular from v1 to the ray. Then the point farthest along the normal of the plane of ray direction and
 //!    edge v1 v2, on the side of the ray, replaces v1 or v2, or completes the portal as v3.
 //! 2. *Climb* ([`Portal::climb`]): the known difference farthest along the portal's normal replaces one corner, so that
-//!    the ray crosses the new portal, until none is above it. Refinement, the ray of `along.rs`, the local search and the refinement of directions do so.
+//!    the ray crosses the new portal, until none is above it. Refinement, the ray of `along.rs`, the local search and the
+//!    refinement of directions do so.
 //! 3. *Refinement*: climbs and support calls in turn. It ends if the bounds meet, or if no point is above the portal.
 //!
 //! Departures. Both steps take a known difference if one is far enough, and evaluate the callbacks otherwise.

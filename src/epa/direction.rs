@@ -29,6 +29,7 @@ use crate::trace;
 /// the largest error is 1.1° in place of 0.8°, and warm directions of moving pairs jitter by 0.12° in place of 0.09°; a
 /// curved pair takes 0.1 to 0.5 support points fewer.
 pub const MAX_REFINEMENTS: usize = 4;
+
 /// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: a triangle of points of D
 /// that the ray crosses, with an outward normal. `lower`: the lower bound of the depth, metres. `tolerance`: metres. A full
 /// set ends the refinement.
