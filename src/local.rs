@@ -29,7 +29,8 @@
 //!
 //! Departures. An outer step of the paper's Algorithm 4 takes a support call; here it is a step on the inner model.
 //! Unlike in the paper, a ray is not followed until callbacks confirm its portal: it is left as soon as the inner model
-//! suggests a better one. Steps 4 and 6 are new.
+//! suggests a better one. Steps 4 and 6 are new. A ray that is found again without a new support point is tilted
+//! ([`STUCK_TILT_RAD`]).
 //!
 //! Outputs. [`Status::Converged`]: the overlap is proven, `dir` is a local minimum of the support function, and the
 //! witness points are in their bodies, `depth` apart along `dir`. Any other status: `depth` and `dir` are sound if the

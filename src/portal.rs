@@ -70,7 +70,7 @@ const MIN_PROGRESS_REL: f64 = 1e-12;
 /// The least squared sine of the angle between two sides of a ring, 6°: a narrower one bounds no volume.
 const MIN_RING_SINE2: f64 = 0.01;
 
-/// What of a portal is exact.
+/// How exactly the normal and the corners of a portal are chosen.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Exact {
     /// Nothing: for callers that test afterwards what the portal proves.

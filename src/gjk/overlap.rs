@@ -47,7 +47,7 @@ const MIN_END_FRACTION: f64 = 0.25;
 /// million touches of turned hulls count as hits.
 const GENERIC_FRACTION: f64 = 0.44;
 
-/// What proves that D contains the origin: four points of D whose hull contains it within rounding, the last one repeated if
+/// The proof that D contains the origin: four points of D whose hull contains it within rounding, the last one repeated if
 /// there are fewer.
 #[derive(Clone, Copy, Debug)]
 pub enum OverlapProof {
