@@ -7,7 +7,7 @@
 //! No reference is known to us. Term: the *ray* is the direction of the upper bound, from the origin.
 //!
 //! 1. *Face*: replace corners by known differences, so that the ray crosses the face, until none is above it.
-//! 2. *Prediction* of exact sphere fits of the corners, else of Newton's step, between the bounds. After a prediction that
+//! 2. *Prediction* of the query's sphere fits, else of Newton's step, between the bounds. After a prediction that
 //!    failed, and without one, the normal of the face.
 //! 3. *Evaluation*, if that can lower the upper bound by more than the tolerance. If the support value is what a model
 //!    predicts, this is the end; otherwise the point replaces a corner, and step 1 is next, up to [`MAX_REFINEMENTS`] times.
@@ -40,6 +40,7 @@ pub const MAX_REFINEMENTS: usize = 4;
 pub fn refine_direction<D: Difference, const N: usize>(
     query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
+    fit: &mut SphereFit,
     face: &mut Portal,
     lower: f64,
     tolerance: f64,
@@ -60,7 +61,7 @@ pub fn refine_direction<D: Difference, const N: usize>(
         let prediction = if has_failed {
             None
         } else {
-            predict(set, face, &upper, &normal, lower)
+            predict(set, fit, face, &upper, &normal, lower)
         };
         let (dir, value) = prediction.unwrap_or((normal, offset));
         // The prediction is the upper bound, or there is no room.
@@ -81,6 +82,7 @@ pub fn refine_direction<D: Difference, const N: usize>(
 /// upper bound; `None` without one. `normal`: that of the face.
 fn predict<const N: usize>(
     set: &VertexSet<N>,
+    fit: &mut SphereFit,
     face: &Portal,
     upper: &SupportPlane,
     normal: &Vec3,
@@ -89,8 +91,10 @@ fn predict<const N: usize>(
     let is_possible = |(_, value): &(Vec3, f64)| *value >= lower && *value <= upper.depth;
     let is_known = !face.corners.iter().any(|v| v.pair.is_interior());
     let corners = &face.corners;
-    let sphere =
-        is_known.then(|| SphereFit::of_face(set, corners, upper).predict(set, corners, normal));
+    let sphere = is_known.then(|| {
+        fit.update(set, upper);
+        fit.predict(set, corners, normal)
+    });
     sphere.flatten().filter(is_possible).or_else(|| {
         let step = newton_step(set, upper)?;
         Some((step.dir, step.value)).filter(is_possible)
@@ -123,7 +127,15 @@ mod tests {
             query.evaluate(&mut set, &n).unwrap().vertex()
         });
         let mut face = Portal { corners };
-        refine_direction(&mut query, &mut set, &mut face, 0.0, TOLERANCE).unwrap();
+        refine_direction(
+            &mut query,
+            &mut set,
+            &mut SphereFit::default(),
+            &mut face,
+            0.0,
+            TOLERANCE,
+        )
+        .unwrap();
         let turn = (query.upper.dir - shortest).norm();
         (turn, query.upper.depth, query.support_points() - 3)
     }

@@ -193,26 +193,6 @@ impl SphereFit {
         }
     }
 
-    /// Returns an exact fit of the upper bound's sample and those of the corners of a face.
-    pub fn of_face<const N: usize>(
-        set: &VertexSet<N>,
-        face: &[Vertex; 3],
-        upper: &SupportPlane,
-    ) -> Self {
-        let mut fit = Self::exact();
-        let lowest = FitSample::of_upper(upper);
-        for v in face {
-            for (object, i) in [v.pair.a, v.pair.b].into_iter().enumerate() {
-                let entry = FitSample::of_entry(set, i.into());
-                let found = fit_radii(&lowest, &entry, EXACT_REL_TOL)[object];
-                if found > 0.0 {
-                    fit.radius[object] = found;
-                }
-            }
-        }
-        fit
-    }
-
     /// Returns the radii if a prediction has confirmed them, metres; else 0.
     pub fn confirmed_radius(&self) -> [f64; 2] {
         if self.is_confirmed {

@@ -57,7 +57,7 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let lower = distance - error;
         let mut face = *portal;
         if self.query.upper.depth - lower > tolerance {
-            refine_direction(self.query, set, &mut face, lower, tolerance)?;
+            refine_direction(self.query, set, &mut self.fit, &mut face, lower, tolerance)?;
         }
         Ok(Some(self.proof(
             set,
@@ -95,7 +95,7 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         if end == Status::Converged && self.query.upper.depth - lower > tolerance {
             let corners = exit_face(&self.query.upper, set, self.allowed_gap());
             let mut face = Portal { corners };
-            refine_direction(self.query, set, &mut face, lower, tolerance)?;
+            refine_direction(self.query, set, &mut self.fit, &mut face, lower, tolerance)?;
             refined = Some(face.corners);
         }
         let upper = self.query.upper.depth;
