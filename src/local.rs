@@ -40,14 +40,14 @@
 use crate::geometry::barycentric;
 use crate::geometry::plane::Tetrahedron;
 use crate::gjk::overlap::contains_origin;
-use crate::math::{Vec3, larger, lesser, normalise_unscaled, tangents};
-use crate::minkowski::newton::newton_step;
-use crate::minkowski::sphere_fit::{MIN_ANGLE2, SAME_CENTER_REL, SphereFit};
+use crate::math::{Vec3, lesser, normalise_unscaled, tangents};
+use crate::minkowski::predictor::{Model, Prediction, Predictor};
+use crate::minkowski::sphere_fit::MIN_ANGLE2;
 use crate::minkowski::support::{self, Difference};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL,
-    MIN_GAIN_GAPS, NEGLIGIBLE_GAPS, SAME_VALLEY_COS,
+    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MIN_GAIN_GAPS, NEGLIGIBLE_GAPS,
+    SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::{Exact, MAX_STEPS, NearRay, Portal, PortalPlane, discover};
@@ -80,39 +80,13 @@ enum Step {
     End(Status),
 }
 
-/// The model of D near the upper bound from which a prediction is made.
-#[derive(Clone, Copy, PartialEq)]
-enum Model {
-    /// The sphere fit.
-    Sphere,
-    /// A smooth D, which is flattest along this unit vector perpendicular to the direction.
-    Smooth(Vec3),
-}
-
-/// The minimum that a model predicts.
-#[derive(Clone, Copy)]
-struct Prediction {
-    model: Model,
-    /// Unit.
-    dir: Vec3,
-    /// The support value, metres.
-    value: f64,
-}
-
 /// The state of a walk.
 struct Walk<'w, 'q, D, const N: usize> {
     query: &'w mut SupportQuery<'q, D>,
     set: &'w mut VertexSet<N>,
     /// The portal of the ray; once it is refined, a face of the inner model.
     portal: Portal,
-    fit: SphereFit,
-    /// True if the sphere fits were refuted.
-    is_fit_refuted: bool,
-    /// Newton's step from the first `newton_len` entries.
-    newton: Option<Prediction>,
-    newton_len: usize,
-    /// The number of predictions that failed.
-    failures: u32,
+    predictor: Predictor,
     settings: &'w Settings,
     /// The difference of the centers, else the middle of the support points along the start direction and opposite
     /// to it.
@@ -140,11 +114,7 @@ pub fn local_minimum<D: Difference, const N: usize>(
         query,
         set,
         portal: Portal::default(),
-        fit: SphereFit::exact(),
-        is_fit_refuted: false,
-        newton: None,
-        newton_len: 0,
-        failures: 0,
+        predictor: Predictor::exact(),
         settings,
         iterations: 0,
     };
@@ -215,7 +185,7 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
                     self.query.upper.dir
                 }
                 Step::Fit(model) => {
-                    if self.confirm_fit(&model, tolerance)? {
+                    if self.confirm_fit(model, tolerance)? {
                         let plane = self.query.upper;
                         return self.result(&plane, Some(model));
                     }
@@ -249,8 +219,6 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
     ///
     /// One loop over one portal: the tests share its plane, and each ends the loop or evaluates a direction.
     fn refine(&mut self, ray: &Vec3, tolerance: f64) -> Result<Step, Stop> {
-        // The normal of the face above which a prediction found nothing.
-        let mut failed_normal = Vec3::zeros();
         for _ in 0..MAX_STEPS {
             let rounding = self.query.scale.height_eps();
             let level = INSERT_HEIGHT_GAPS * tolerance + rounding;
@@ -267,10 +235,8 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             }
             let mut prediction = None;
             let worthwhile = self.query.upper.depth - MIN_GAIN_GAPS * tolerance;
-            if face.normal != failed_normal {
-                if self.failures < MAX_FAILURES {
-                    prediction = self.predict(&face.normal);
-                }
+            if !self.predictor.has_failed_above(&face.normal) {
+                prediction = self.predict(&face.normal);
                 if let Some(p) = prediction.filter(|p| !(p.value < worthwhile)) {
                     if self.is_upper_bound(&p, tolerance) {
                         return Ok(Step::Fit(p.model));
@@ -293,20 +259,18 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             let before = self.query.upper.depth;
             let sample = self.evaluate(&prediction.map_or(face.normal, |p| p.dir))?;
             if let Some(p) = &prediction {
-                let slack = MAX_MISS_REL * larger(before - p.value, tolerance);
-                if sample.h < p.value + slack {
+                if self.predictor.judge(p, sample.h, before, tolerance) {
                     return Ok(match self.is_minimum(p, sample.h, tolerance) {
                         true => Step::Fit(p.model),
                         false => Step::Ray(p.dir),
                     });
                 }
-                self.failures += 1;
             }
             if face.height(&sample.w) > level {
                 self.portal
                     .replace_corner(ray, sample.vertex(), Exact::Nothing);
             } else if prediction.is_some() {
-                failed_normal = face.normal;
+                self.predictor.fail_above(&face.normal);
             } else {
                 let plane = self.query.plane(self.set, sample.pair.a.into());
                 return Ok(match is_inside {
@@ -339,45 +303,12 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
         is_lower.then_some(Step::Ray(upper.dir))
     }
 
-    /// Returns the minimum that the sphere fits predict, else the one that Newton's step predicts. Its direction was
-    /// not evaluated yet, or is that of the upper bound. (Measured: if directions may be evaluated again, the longest
-    /// walks of balls and capsules take twice as many support points.)
+    /// Returns the minimum that a model predicts near the portal. Its direction was not evaluated yet, or is that of the upper
+    /// bound. (Measured: if directions may be evaluated again, the longest walks of balls and capsules take twice as many
+    /// support points.)
     fn predict(&mut self, normal: &Vec3) -> Option<Prediction> {
-        self.fit.update(self.set, &self.query.upper);
-        let sphere = self.predict_sphere(normal).filter(|p| self.is_new(&p.dir));
-        if sphere.is_some() {
-            return sphere;
-        }
-        if self.newton_len != self.set.len() {
-            self.newton_len = self.set.len();
-            let step = newton_step(self.set, &self.query.upper);
-            self.newton = step.map(|step| Prediction {
-                model: Model::Smooth(step.flattest),
-                dir: step.dir,
-                value: step.value,
-            });
-        }
-        self.newton.filter(|p| self.is_new(&p.dir))
-    }
-
-    /// Returns the minimum that the sphere fits predict.
-    fn predict_sphere(&self, normal: &Vec3) -> Option<Prediction> {
-        let sum = self.fit.sum();
-        if self.is_fit_refuted || !(sum > 0.0) {
-            return None;
-        }
-        let found = self.fit.predict(self.set, &self.portal.corners, normal);
-        // Any direction is a minimum of concentric balls.
-        let is_concentric = self.is_centered && self.interior.norm() <= SAME_CENTER_REL * sum;
-        let (dir, value) = found.or_else(|| is_concentric.then_some((*normal, sum)))?;
-        let model = Model::Sphere;
-        Some(Prediction { model, dir, value })
-    }
-
-    /// Returns whether unit `dir` was not evaluated yet, or is the direction of the upper bound.
-    fn is_new(&self, dir: &Vec3) -> bool {
-        is_same(&self.query.upper.dir, dir)
-            || !(0..self.set.len()).any(|k| is_same(&self.set.dir(k), dir))
+        let (set, upper, corners) = (&*self.set, &self.query.upper, &self.portal.corners);
+        (self.predictor).minimum(set, corners, normal, upper, |p| is_new(set, upper, &p.dir))
     }
 
     /// Returns whether the upper bound is `value`, metres.
@@ -392,11 +323,11 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
         let turn2 = (prediction.dir - dir).norm_squared();
         let is_coincident = match prediction.model {
             Model::Sphere => {
-                let off = (self.fit.sum() - depth).powi(2);
-                turn2 * self.fit.sum() <= EQUAL_TOLERANCES * tolerance
+                let off = (self.predictor.fit.sum() - depth).powi(2);
+                turn2 * self.predictor.fit.sum() <= EQUAL_TOLERANCES * tolerance
                     && turn2 * off <= depth * tolerance
             }
-            Model::Smooth(_) => self.vertices_coincide(tolerance),
+            _ => self.vertices_coincide(tolerance),
         };
         is_coincident && self.equals_upper_bound(prediction.value, tolerance)
     }
@@ -416,10 +347,11 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
     }
 
     /// Returns whether the upper bound, which a model predicts, is a minimum. A sharp tip can satisfy the sphere fit.
-    fn confirm_fit(&mut self, model: &Model, tolerance: f64) -> Result<bool, Stop> {
+    fn confirm_fit(&mut self, model: Model, tolerance: f64) -> Result<bool, Stop> {
         let n = self.query.upper.dir;
-        if let Model::Smooth(flattest) = model {
-            return self.is_lowest(&n, &[*flattest, -flattest], None, tolerance);
+        if model != Model::Sphere {
+            let flattest = self.predictor.flattest;
+            return self.is_lowest(&n, &[flattest, -flattest], None, tolerance);
         }
         let [e1, e2] = tangents(&n);
         let e2 = e2 * 0.75_f64.sqrt();
@@ -430,13 +362,13 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             return Ok(false);
         }
         let upper = &self.query.upper;
-        self.is_fit_refuted = !(self.fit).are_spheres_confirmed(
-            self.set,
-            &self.portal.corners,
-            upper,
-            center_tolerance,
-        );
-        Ok(!self.is_fit_refuted)
+        let fit = &mut self.predictor.fit;
+        let corners = &self.portal.corners;
+        let is_confirmed = fit.are_spheres_confirmed(self.set, corners, upper, center_tolerance);
+        if !is_confirmed {
+            fit.refute();
+        }
+        Ok(is_confirmed)
     }
 
     /// Returns whether no support value of unit `n` tilted towards one of the unit vectors `directions`, which are
@@ -465,8 +397,11 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
                 continue;
             }
             let pair = VertexSet::<N>::pair_of_entry(k);
-            let is_accepted = center_tolerance
-                .is_none_or(|tolerance| self.fit.is_confirmed_twice(self.set, pair, tolerance));
+            let is_accepted = center_tolerance.is_none_or(|tolerance| {
+                self.predictor
+                    .fit
+                    .is_confirmed_twice(self.set, pair, tolerance)
+            });
             for (is_known, direction) in is_known.iter_mut().zip(directions) {
                 let along = off.dot(direction);
                 // Within 60 degrees: a known direction confirms the closest of three.
@@ -492,11 +427,12 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             dir, depth, point, ..
         } = plane;
         let (point1, point2) = match model {
-            Some(Model::Smooth(_)) => (point.v1, point.v2),
             Some(Model::Sphere) => self
+                .predictor
                 .fit
                 .witnesses(self.set, &self.portal.corners, dir)
                 .into(),
+            Some(_) => (point.v1, point.v2),
             None => {
                 let [a, b, c] = self.portal.points();
                 let weights = barycentric::triangle(&(dir * *depth), &a, &b, &c).weights;
@@ -559,6 +495,11 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
         let dir = face.map_or(self.query.upper.dir, |face| face.normal);
         contains_origin(self.query, self.set, center, &dir, false).map(|_| ())
     }
+}
+
+/// Returns whether unit `dir` was not evaluated yet, or is the direction of the upper bound.
+fn is_new<const N: usize>(set: &VertexSet<N>, upper: &SupportPlane, dir: &Vec3) -> bool {
+    is_same(&upper.dir, dir) || !(0..set.len()).any(|k| is_same(&set.dir(k), dir))
 }
 
 /// Returns whether two unit vectors count as the same, by their difference: the product of vectors that are rounded to single

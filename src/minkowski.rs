@@ -17,8 +17,9 @@
 //! | [`general_position`] | the tilt of the directions that are evaluated |
 //! | [`support_query`] | evaluation, upper bound, separating-axis test |
 //! | [`tolerance`] | effective tolerance, contact eps, rounding |
-//! | [`sphere_fit`] | sphere fits, which choose the directions to evaluate |
+//! | [`sphere_fit`] | sphere fits of the two objects |
 //! | [`newton`] | Newton's step to a minimum of a smooth D |
+//! | [`predictor`] | proposes the next direction from models of D, and judges the last one |
 //! | [`separating_axis`] | the axis test for pairs that stay separated |
 //! | [`warm_start`] | the state of a pair from one query to the next |
 //! | [`tuning`] | the tuned constants of the search |
@@ -26,6 +27,7 @@
 
 pub mod general_position;
 pub mod newton;
+pub mod predictor;
 pub mod separating_axis;
 pub mod sphere_fit;
 pub mod support;

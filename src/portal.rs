@@ -28,7 +28,7 @@
 //! direction is a separating axis; this is the separation test.
 
 use crate::math::{self, Vec3, lesser, normalise_unscaled, perpendicular, tangents};
-use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
+use crate::minkowski::predictor::{Model, Predictor};
 use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::tolerance::GapLimit;
@@ -501,14 +501,12 @@ pub fn choose_corner(corners: [Vec3; 3], ray: &Vec3, w: &Vec3) -> usize {
 pub fn refine<D: Difference, const N: usize>(
     query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
-    fit: &mut SphereFit,
+    predictor: &mut Predictor,
     ray: &Vec3,
     portal: &mut Portal,
     limit: &GapLimit,
 ) -> Result<(), Stop> {
     trace::stage("refinement");
-    // The normal of the portal above which a fit's direction found nothing.
-    let mut failed_normal = Vec3::zeros();
     for _ in 0..MAX_STEPS {
         let upper = query.upper.depth;
         let gap = limit.allowed(&query.scale, upper);
@@ -525,16 +523,16 @@ pub fn refine<D: Difference, const N: usize>(
         if has_closed || set.is_full() || !(plane.length > 0.0) {
             return Ok(());
         }
-        let along_normal = plane.normal == failed_normal || plane.offset < 0.0;
         let corners = |_: &_| portal.corners;
-        let (sample, source) =
-            evaluate_beyond(query, set, fit, corners, &plane.normal, gap, along_normal)?;
+        let along_normal = plane.offset < 0.0;
+        let (sample, model) =
+            predictor.evaluate_beyond(query, set, corners, &plane.normal, gap, along_normal)?;
         if plane.height(&sample.w) > query.scale.height_eps() * plane.length {
             portal.replace_corner(ray, sample.vertex(), Exact::Nothing);
-        } else if source == DirectionSource::Normal {
+        } else if model == Model::Face {
             return Ok(());
         } else {
-            failed_normal = plane.normal;
+            predictor.fail_above(&plane.normal);
         }
     }
     Ok(())
@@ -582,8 +580,16 @@ mod tests {
         )
         .ok()??;
         let mut portal = found;
-        let mut fit = SphereFit::default();
-        refine(&mut query, &mut set, &mut fit, &ray, &mut portal, &LIMIT).ok()?;
+        let mut predictor = Predictor::default();
+        refine(
+            &mut query,
+            &mut set,
+            &mut predictor,
+            &ray,
+            &mut portal,
+            &LIMIT,
+        )
+        .ok()?;
         Some((ray, [found, portal], query.upper.depth))
     }
 

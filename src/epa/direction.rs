@@ -7,19 +7,17 @@
 //! No reference is known to us. Term: the *ray* is the direction of the upper bound, from the origin.
 //!
 //! 1. *Face*: replace corners by known differences, so that the ray crosses the face, until none is above it.
-//! 2. *Prediction* of the query's sphere fits, else of Newton's step, between the bounds. After a prediction that
-//!    failed, and without one, the normal of the face.
-//! 3. *Evaluation*, if that can lower the upper bound by more than the tolerance. If the support value is what a model
-//!    predicts, this is the end; otherwise the point replaces a corner, and step 1 is next, up to [`MAX_REFINEMENTS`] times.
+//! 2. *Prediction* of the sphere fits, else of Newton's step ([`Predictor`]), between the bounds; without one the normal of
+//!    the face.
+//! 3. *Evaluation*, if that can lower the upper bound by more than the tolerance. The point replaces a corner. If the support
+//!    value is what a model predicts, this is the end; otherwise step 1 is next, up to [`MAX_REFINEMENTS`] times.
 //!
 //! Outputs. The upper bound, which is sound, and a face of the inner model near it, for witness points. Nothing else is
 //! proven.
 
-use crate::math::Vec3;
-use crate::minkowski::newton::newton_step;
-use crate::minkowski::sphere_fit::SphereFit;
+use crate::minkowski::predictor::{Prediction, Predictor};
 use crate::minkowski::support::Difference;
-use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
+use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tuning::INSERT_HEIGHT_GAPS;
 use crate::minkowski::vertex_set::VertexSet;
 use crate::portal::{Exact, Portal, PortalPlane};
@@ -40,13 +38,12 @@ pub const MAX_REFINEMENTS: usize = 4;
 pub fn refine_direction<D: Difference, const N: usize>(
     query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
-    fit: &mut SphereFit,
+    predictor: &mut Predictor,
     face: &mut Portal,
     lower: f64,
     tolerance: f64,
 ) -> Result<(), Stop> {
     trace::stage("direction");
-    let mut has_failed = false;
     for _ in 0..MAX_REFINEMENTS {
         let upper = query.upper;
         let target = upper.depth - tolerance;
@@ -58,52 +55,32 @@ pub fn refine_direction<D: Difference, const N: usize>(
         else {
             break;
         };
-        let prediction = if has_failed {
-            None
-        } else {
-            predict(set, fit, face, &upper, &normal, lower)
-        };
-        let (dir, value) = prediction.unwrap_or((normal, offset));
+        let is_possible = |p: &Prediction| p.value >= lower && p.value <= upper.depth;
+        let prediction = predictor.minimum(set, &face.corners, &normal, &upper, is_possible);
+        let (dir, value) = prediction.map_or((normal, offset), |p| (p.dir, p.value));
         // The prediction is the upper bound, or there is no room.
         if !(value < target) || set.is_full() {
             break;
         }
         let sample = query.evaluate(set, &dir)?;
+        if let Some(p) = prediction {
+            predictor.judge(&p, sample.h, upper.depth, tolerance);
+            if !(sample.h < target) {
+                predictor.fail_above(&normal);
+            }
+        }
+        face.replace_corner(&query.upper.dir, sample.vertex(), Exact::Nothing);
         if prediction.is_some() && (sample.h - value).abs() <= tolerance {
             break;
         }
-        has_failed = prediction.is_some() && !(sample.h < target);
-        face.replace_corner(&query.upper.dir, sample.vertex(), Exact::Nothing);
     }
     Ok(())
-}
-
-/// Returns the unit direction and the least support value, metres, that a model of D predicts between the lower and the
-/// upper bound; `None` without one. `normal`: that of the face.
-fn predict<const N: usize>(
-    set: &VertexSet<N>,
-    fit: &mut SphereFit,
-    face: &Portal,
-    upper: &SupportPlane,
-    normal: &Vec3,
-    lower: f64,
-) -> Option<(Vec3, f64)> {
-    let is_possible = |(_, value): &(Vec3, f64)| *value >= lower && *value <= upper.depth;
-    let is_known = !face.corners.iter().any(|v| v.pair.is_interior());
-    let corners = &face.corners;
-    let sphere = is_known.then(|| {
-        fit.update(set, upper);
-        fit.predict(set, corners, normal)
-    });
-    sphere.flatten().filter(is_possible).or_else(|| {
-        let step = newton_step(set, upper)?;
-        Some((step.dir, step.value)).filter(is_possible)
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Vec3;
     use crate::minkowski::support::MinkowskiDifference;
     use crate::test_shapes::{Random, Rotation, Shape, ball, difference, ellipsoid};
 
@@ -130,7 +107,7 @@ mod tests {
         refine_direction(
             &mut query,
             &mut set,
-            &mut SphereFit::default(),
+            &mut Predictor::default(),
             &mut face,
             0.0,
             TOLERANCE,

@@ -10,8 +10,7 @@
 //! 2. Insert the known difference farthest along the face's normal, without a callback, if it closes at least
 //!    [`INSERT_GAIN_REL`] of the gap between the face and the upper bound: of all known vertices, in a deep overlap with more
 //!    than [`MAX_SCANNED`] entries of those of the face's corners.
-//! 3. Otherwise evaluate the callbacks, along the face's normal or along a direction that a sphere fit suggests
-//!    ([`evaluate_beyond`]). Insert the point if it is above the face.
+//! 3. Otherwise evaluate the callbacks, along the face's normal or along the direction that the predictor proposes. Insert the point if it is above the face.
 //! 4. If no point above the face is found along its normal, the support value may lower the upper bound. If it does
 //!    not, the loop ends with [`Status::Rounding`].
 //!
@@ -25,7 +24,7 @@
 use crate::epa::direction::MAX_REFINEMENTS;
 use crate::epa::polytope::EpaPolytope;
 use crate::math::{Vec3, larger, lesser};
-use crate::minkowski::sphere_fit::{DirectionSource, SphereFit, evaluate_beyond};
+use crate::minkowski::predictor::{Model, Predictor};
 use crate::minkowski::support::Difference;
 use crate::minkowski::support_query::{Stop, SupportQuery};
 use crate::minkowski::tolerance::{Bounds, GapLimit, Scale};
@@ -80,7 +79,7 @@ impl EpaLimits {
 /// The parameters of an expansion besides its buffers, which have three sizes.
 pub struct Expansion<'e, 'm, D> {
     pub query: &'e mut SupportQuery<'m, D>,
-    pub fit: &'e mut SphereFit,
+    pub predictor: &'e mut Predictor,
     /// The interior point of the query.
     pub interior: &'e Vec3,
     pub limits: &'e EpaLimits,
@@ -103,13 +102,11 @@ pub fn expand<D: Difference, const N: usize, const F: usize>(
     trace::stage("expansion");
     let Expansion {
         query,
-        fit,
+        predictor,
         interior,
         limits,
         iterations,
     } = expansion;
-    // The key of the closest face when a fit's direction found nothing above it.
-    let mut last_failed_key = -1.0;
     // The normal of the face above which the last point was inserted.
     let mut last_normal = Vec3::zeros();
     // Terminates: each turn adds a vertex to the set or a corner.
@@ -156,16 +153,16 @@ pub fn expand<D: Difference, const N: usize, const F: usize>(
         // In the largest buffers, room for the corners of the remaining support calls is reserved.
         let has_room = || has_larger || polytope.has_room(N - MAX_REFINEMENTS - set.len());
         if !(height > level && is_gain && has_room()) {
-            let along_normal = !is_inside || closest.key == last_failed_key || !is_shallow(query);
+            let along_normal = !is_inside || !is_shallow(query);
             let vertices = |set: &VertexSet<N>| polytope.face(set, interior, face);
-            let (sample, source) =
-                evaluate_beyond(query, set, fit, vertices, &normal, allowed, along_normal)?;
+            let (sample, model) =
+                predictor.evaluate_beyond(query, set, vertices, &normal, allowed, along_normal)?;
             *iterations += 1;
             let queried_height = normal.dot(&sample.w) - offset;
             if queried_height > rounding {
                 w = sample.vertex();
-            } else if source != DirectionSource::Normal {
-                last_failed_key = closest.key;
+            } else if model != Model::Face {
+                predictor.fail_above(&normal);
                 continue;
             } else if query.upper.depth < upper {
                 continue;
@@ -246,7 +243,7 @@ mod tests {
         let mut iterations = 0;
         let expansion = Expansion {
             query: &mut query,
-            fit: &mut SphereFit::default(),
+            predictor: &mut Predictor::default(),
             interior: &at,
             limits,
             iterations: &mut iterations,

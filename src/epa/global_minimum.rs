@@ -44,7 +44,7 @@ use crate::epa::global_minimum::result::Proof;
 use crate::epa::polytope::EpaPolytope;
 use crate::gjk::overlap::{CAPACITY, OverlapProof, contains_origin};
 use crate::math::Vec3;
-use crate::minkowski::sphere_fit::SphereFit;
+use crate::minkowski::predictor::Predictor;
 use crate::minkowski::support::{Difference, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
@@ -78,7 +78,7 @@ struct EpaSolver<'q, 'm, D> {
     request: &'q EpaRequest<'q>,
     /// The interior point, and the points of the objects whose difference it is.
     interior: SupportPoint,
-    fit: SphereFit,
+    predictor: Predictor,
     /// [`FAR_UPPER_REL`] for a cold start. The direction of an overlap's state says where the minimum is, however deep.
     far_upper_rel: f64,
     /// The number of support points that expanded polytopes.
@@ -115,7 +115,7 @@ pub fn global_minimum<D: Difference>(
         query,
         request,
         interior: request.center.copied().unwrap_or_default(),
-        fit: SphereFit::warm(radius),
+        predictor: Predictor::warm(radius),
         far_upper_rel: if is_warm && !is_guess {
             f64::INFINITY
         } else {
@@ -156,7 +156,7 @@ pub fn global_minimum<D: Difference>(
         point2: points[1],
         iterations: solver.iterations,
         status,
-        radius: solver.fit.confirmed_radius(),
+        radius: solver.predictor.confirmed_radius(),
         ..Solution::default()
     })
 }
@@ -325,7 +325,7 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
     ) -> Result<Option<Status>, Stop> {
         let expansion = Expansion {
             query: self.query,
-            fit: &mut self.fit,
+            predictor: &mut self.predictor,
             interior: &self.interior.v,
             limits: &self.request.limits,
             iterations: &mut self.iterations,
@@ -655,7 +655,7 @@ mod tests {
         }
     }
 
-    /// The support point in place of a corner: without it the mean distance is half as large again.
+    /// The face has the support point of the refined direction for a corner: the mean distance is 0.024 mm, and 0.090 mm without.
     #[test]
     fn witness_points_of_ellipsoids_are_apart_along_the_direction() {
         let mut r = Random::new(93);
@@ -686,7 +686,7 @@ mod tests {
             }
         }
         assert!(
-            count > 300.0 && sum / count < 1e-4,
+            count > 300.0 && sum / count < TOLERANCE.max(4e-5),
             "{} {count}",
             sum / count
         );

@@ -9,7 +9,7 @@
 //! 2. Add known differences to the simplex, the farthest towards the origin first, as long as one is farther
 //!    towards the origin than the simplex.
 //! 3. Evaluate the direction from the simplex to the origin, or the direction in which the sphere fits
-//!    ([`SphereFit`]) predict the support plane closest to the origin; the prediction is exact at once for
+//!    ([`Predictor`]) predict the support plane closest to the origin; the prediction is exact at once for
 //!    polytopes rounded by a sphere.
 //! 4. The evaluated direction is limited to [`MAX_EXTRAPOLATION_TAN`] from the normal of the best plane found so far: a
 //!    direction farther away returns a vertex on the far side of D instead of a corner of the closest face.
@@ -22,10 +22,10 @@
 use crate::gjk::overlap::{CAPACITY, OverlapProof};
 use crate::gjk::simplex::Simplex;
 use crate::math::{ITERATION_CAP, Vec3, larger, unit};
-use crate::minkowski::sphere_fit::SphereFit;
+use crate::minkowski::predictor::Predictor;
 use crate::minkowski::support::{self, Difference, Fault};
 use crate::minkowski::support_query::SupportQuery;
-use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES, MAX_MISS_REL, MIN_GAIN_GAPS};
+use crate::minkowski::tuning::{INSERT_HEIGHT_GAPS, MAX_FAILURES, MIN_GAIN_GAPS};
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 use crate::portal::MAX_STEPS;
 use crate::trace;
@@ -70,20 +70,20 @@ pub struct ClosestPoints {
     pub is_inside: bool,
 }
 
-/// Finds the closest points. Starts along `start`. `fit`: may hold the sphere radii of the last query.
+/// Finds the closest points. Starts along `start`. `predictor`: may hold the sphere radii of the last query.
 ///
 /// # Errors
 /// [`Fault::NonFinite`].
 #[inline(always)]
 pub fn closest_points<D: Difference>(
     query: &mut SupportQuery<'_, D>,
-    fit: &mut SphereFit,
+    predictor: &mut Predictor,
     start: &Direction,
     goal: &Goal,
 ) -> Result<ClosestPoints, Fault> {
     let mut search = ClosestPointsSearch {
         query,
-        fit,
+        predictor,
         set: VertexSet::EMPTY,
         simplex: Simplex::EMPTY,
         to_origin: start.n,
@@ -112,7 +112,7 @@ pub fn closest_points<D: Difference>(
 /// State of a search.
 struct ClosestPointsSearch<'s, 'q, D> {
     query: &'s mut SupportQuery<'q, D>,
-    fit: &'s mut SphereFit,
+    predictor: &'s mut Predictor,
     set: VertexSet<CAPACITY>,
     simplex: Simplex,
     /// From the simplex to the origin, of any length.
@@ -236,23 +236,26 @@ impl<D: Difference> ClosestPointsSearch<'_, '_, D> {
     fn evaluate_prediction(&mut self, dir: &Vec3, gap: f64) -> Result<bool, Fault> {
         if self.set.is_full() {
             self.set.compact(self.simplex.slots());
-            self.fit.restart();
+            self.predictor.fit.restart();
         }
         let bound = self.query.upper;
-        self.fit.update(&self.set, &bound);
         if core::mem::take(&mut self.was_prediction) {
             return Ok(false);
         }
-        let predicted = self.fit.predict(&self.set, &self.simplex.corners(), dir);
+        let corners = self.simplex.corners();
+        let predicted = self.predictor.sphere(&self.set, &corners, dir, &bound);
         // It raises the lower bound, and not above the upper one.
         let is_useful =
             |value: f64| value < bound.depth - MIN_GAIN_GAPS * gap && -value < self.upper + gap;
-        let Some((n, value)) = predicted.filter(|p| is_useful(p.1)) else {
+        let Some(prediction) = predicted.filter(|p| is_useful(p.value)) else {
             return Ok(false);
         };
-        let sample = self.query.evaluate_signed(&mut self.set, &n, 0.0)?;
+        let sample = self
+            .query
+            .evaluate_signed(&mut self.set, &prediction.dir, 0.0)?;
         self.was_prediction = true;
-        self.fit.is_confirmed = sample.h <= value + MAX_MISS_REL * (bound.depth - value);
+        self.predictor
+            .judge(&prediction, sample.h, bound.depth, gap);
         Ok(true)
     }
 
@@ -305,12 +308,12 @@ mod tests {
                     max_distance,
                     max_samples: 60,
                 };
-                let mut fit = SphereFit::default();
+                let mut predictor = Predictor::default();
                 if round % 2 == 0 {
                     let md = difference(hull(&cube), hull(&other));
                     closest_points(
                         &mut SupportQuery::new(&md, None, 0.0),
-                        &mut fit,
+                        &mut predictor,
                         &Direction::exact(start),
                         &goal,
                     )
@@ -319,7 +322,7 @@ mod tests {
                     let md = difference(ball(up * 0.5, 0.5), ball(-up * (0.5 + gap), 0.5));
                     closest_points(
                         &mut SupportQuery::new(&md, None, 0.0),
-                        &mut fit,
+                        &mut predictor,
                         &Direction::exact(start),
                         &goal,
                     )
@@ -356,10 +359,10 @@ mod tests {
             };
             let md = difference(hull(&cube), hull(&other));
             let mut query = SupportQuery::new(&md, None, 0.0);
-            let mut fit = SphereFit::default();
+            let mut predictor = Predictor::default();
             let start = turn * Vec3::new(1.0, 1.0, 1.0).normalize();
-            let found =
-                closest_points(&mut query, &mut fit, &Direction::exact(start), &goal).unwrap();
+            let found = closest_points(&mut query, &mut predictor, &Direction::exact(start), &goal)
+                .unwrap();
             assert_eq!(found.status, Status::Converged, "round {round}");
             assert!(found.lower <= gap + 1e-12 && gap - found.lower <= 1e-9);
             most = most.max(found.iterations);
@@ -381,11 +384,11 @@ mod tests {
                 max_distance: f64::INFINITY,
                 max_samples: 60,
             };
-            let mut fit = SphereFit::default();
+            let mut predictor = Predictor::default();
             let start = r.direction();
             let mut query = SupportQuery::new(&md, None, 0.0);
-            let found =
-                closest_points(&mut query, &mut fit, &Direction::exact(start), &goal).unwrap();
+            let found = closest_points(&mut query, &mut predictor, &Direction::exact(start), &goal)
+                .unwrap();
             assert!(found.is_inside);
             assert!(found.upper < 1e-6 && found.lower < 0.0);
         }
@@ -416,9 +419,9 @@ mod tests {
                 max_samples: 60,
             };
             let mut query = SupportQuery::new(&md, None, 0.0);
-            let (mut fit, start) = (SphereFit::default(), r.direction());
-            let found =
-                closest_points(&mut query, &mut fit, &Direction::exact(start), &goal).unwrap();
+            let (mut predictor, start) = (Predictor::default(), r.direction());
+            let found = closest_points(&mut query, &mut predictor, &Direction::exact(start), &goal)
+                .unwrap();
             let gap = found.upper - found.lower;
             // The weights of the corners are rounded too.
             let is_closed = gap <= 16.0 * query.scale.contact_eps();

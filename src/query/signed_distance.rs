@@ -21,7 +21,7 @@
 use crate::epa::buffers::Arena;
 use crate::gjk::closest_points::{ClosestPoints, Goal, closest_points};
 use crate::math::{EPSILON, Real, larger, lesser};
-use crate::minkowski::sphere_fit::SphereFit;
+use crate::minkowski::predictor::Predictor;
 use crate::minkowski::support::{Difference, Fault, SupportMap};
 use crate::minkowski::support_query::{Stop, SupportQuery, if_overlapping};
 use crate::minkowski::warm_start::WarmStart;
@@ -124,7 +124,7 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             ..
         } = self.settings;
         let mut query = SupportQuery::new(&self.difference, self.centers.as_ref(), tolerance);
-        let mut fit = SphereFit::from_radius(state.radius);
+        let mut predictor = Predictor::warm(state.radius);
         let goal = Goal {
             tolerance,
             margin,
@@ -132,8 +132,12 @@ impl<A: SupportMap, B: SupportMap> Pair<A, B> {
             max_samples: max_iterations,
         };
         let start = self.start(state, state.separating_axis().is_some());
-        let cores = closest_points(&mut query, &mut fit, &start, &goal)?;
-        Ok((cores, fit.confirmed_radius(), query.scale.contact_eps()))
+        let cores = closest_points(&mut query, &mut predictor, &start, &goal)?;
+        Ok((
+            cores,
+            predictor.confirmed_radius(),
+            query.scale.contact_eps(),
+        ))
     }
 }
 

@@ -57,7 +57,14 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let lower = distance - error;
         let mut face = *portal;
         if self.query.upper.depth - lower > tolerance {
-            refine_direction(self.query, set, &mut self.fit, &mut face, lower, tolerance)?;
+            refine_direction(
+                self.query,
+                set,
+                &mut self.predictor,
+                &mut face,
+                lower,
+                tolerance,
+            )?;
         }
         Ok(Some(self.proof(
             set,
@@ -95,7 +102,14 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         if end == Status::Converged && self.query.upper.depth - lower > tolerance {
             let corners = exit_face(&self.query.upper, set, self.allowed_gap());
             let mut face = Portal { corners };
-            refine_direction(self.query, set, &mut self.fit, &mut face, lower, tolerance)?;
+            refine_direction(
+                self.query,
+                set,
+                &mut self.predictor,
+                &mut face,
+                lower,
+                tolerance,
+            )?;
             refined = Some(face.corners);
         }
         let upper = self.query.upper.depth;
@@ -134,8 +148,7 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let upper = &self.query.upper;
         let mut points = [Vec3::zeros(); 2];
         if self.request.wants_points {
-            let closest =
-                |face: &[Vertex; 3]| witness_points(upper, &self.interior, set, face, gap);
+            let closest = |face: &[Vertex; 3]| witness_points(upper, &self.interior, set, face);
             let distance2;
             (points, distance2) = closest(face);
             if distance2 > max_foot_distance2(upper, gap) {

@@ -70,7 +70,8 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let near2 = NEAR_RING_REL * NEAR_RING_REL * ring_radius * ring_radius;
         // The vertex of the warm direction of two round objects is on a flat side of D, and a poor corner: the ray is evaluated
         // too, unless a ring is next.
-        if self.fit.radius[0] * self.fit.radius[1] > 0.0 && set.len() == 1 {
+        let [radius1, radius2] = self.predictor.fit.radius;
+        if radius1 * radius2 > 0.0 && set.len() == 1 {
             let v1 = set.farthest_vertex(ray).w;
             if (ray * v1.dot(ray) - v1).norm_squared() > near2 {
                 query.evaluate(set, ray)?;
@@ -96,7 +97,7 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         refine(
             query,
             set,
-            &mut self.fit,
+            &mut self.predictor,
             ray,
             &mut portal,
             &self.request.limits.gap,
