@@ -287,10 +287,14 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
         let upper = &self.query.upper;
         let angle2 = 2.0 * (1.0 - face.normal.dot(&upper.dir));
         if is_inside && self.equals_upper_bound(face.offset, tolerance) {
-            // Up to this angle the witness points coincide within the tolerance after obj2 is moved by the depth.
+            // Up to this angle, whose plane is lower by depth × angle² / 2, the witness points are the depth apart within the
+            // tolerance.
             let cone = 2.0 * self.portal.foot_depth(&face.normal) / face.offset;
             let allowed2 = if cone < CONFIRM_TILT_RAD {
-                lesser(CONFIRM_RANGE_RAD[0].powi(2), tolerance / upper.depth)
+                lesser(
+                    CONFIRM_RANGE_RAD[0].powi(2),
+                    2.0 * NEGLIGIBLE_GAPS * tolerance / upper.depth,
+                )
             } else {
                 0.25 * cone * cone
             };
