@@ -23,7 +23,7 @@
 //! 5. *Normal*: if the foot is outside the face, the next ray is along the face's normal, without a callback. If it is
 //!    inside, the normal is evaluated, and is a candidate if no point is above the face.
 //! 6. *Confirmation* of a candidate: a face, unless the upper bound is lower; the prediction of a model, which a sharp tip
-//!    can satisfy, by directions tilted by [`CONFIRM_TILT_RAD`], which are evaluated if no known direction is near.
+//!    can satisfy, by directions inclined by [`CONFIRM_ANGLE_RAD`], which are evaluated if no known direction is near.
 //! 7. *Overlap*: proven if the tetrahedron of interior point and face contains the origin, else by GJK; or an evaluated
 //!    direction separates.
 //!
@@ -46,7 +46,7 @@ use crate::minkowski::sphere_fit::MIN_ANGLE2;
 use crate::minkowski::support::{self, Difference};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery, SupportSample};
 use crate::minkowski::tuning::{
-    CONFIRM_RANGE_RAD, CONFIRM_TILT_RAD, INSERT_HEIGHT_GAPS, MIN_GAIN_GAPS, NEGLIGIBLE_GAPS,
+    CONFIRM_ANGLE_RAD, CONFIRM_RANGE_RAD, INSERT_HEIGHT_GAPS, MIN_GAIN_GAPS, NEGLIGIBLE_GAPS,
     SAME_VALLEY_COS,
 };
 use crate::minkowski::vertex_set::VertexSet;
@@ -66,7 +66,7 @@ const EQUAL_TOLERANCES: f64 = 1.0 - NEGLIGIBLE_GAPS;
 /// The tilt of a ray that is found again with no new entry, radians: it is in the plane of an edge of its portal, so that the
 /// signs by which corners are replaced are rounding, and the face is one that it does not cross. Bodies of revolution on one
 /// axis have such rays.
-const STUCK_TILT_RAD: f64 = 1e-3 * CONFIRM_TILT_RAD;
+const STUCK_TILT_RAD: f64 = 1e-3 * CONFIRM_ANGLE_RAD;
 
 /// The next step of a walk.
 enum Step {
@@ -153,9 +153,9 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             let first = self.set.farthest_vertex(&ray);
             // The approximate length of the ray in D from the interior point.
             let length = (first.w - self.interior).dot(&ray);
-            // The ring's tilt is half of that of the directions that confirm a minimum.
-            let tilt = 0.5 * CONFIRM_TILT_RAD;
-            let ring = NearRay::Ring { axis: &ray, tilt };
+            // The slope of the ring is half of that of the directions that confirm a minimum.
+            let slope = 0.5 * CONFIRM_ANGLE_RAD;
+            let ring = NearRay::Ring { axis: &ray, slope };
             let near2 = 0.5 * tolerance * length;
             let portal = discover(
                 self.query,
@@ -290,7 +290,7 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             // Up to this angle, whose plane is lower by depth × angle² / 2, the witness points are the depth apart within the
             // tolerance.
             let cone = 2.0 * self.portal.foot_depth(&face.normal) / face.offset;
-            let allowed2 = if cone < CONFIRM_TILT_RAD {
+            let allowed2 = if cone < CONFIRM_ANGLE_RAD {
                 lesser(
                     CONFIRM_RANGE_RAD[0].powi(2),
                     2.0 * NEGLIGIBLE_GAPS * tolerance / upper.depth,
@@ -375,8 +375,8 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
         Ok(is_confirmed)
     }
 
-    /// Returns whether no support value of unit `n` tilted towards one of the unit vectors `directions`, which are
-    /// perpendicular to it, is lower than the upper bound. Evaluates them, unless a direction near the tilted one was
+    /// Returns whether no support value of unit `n` inclined towards one of the unit vectors `directions`, which are
+    /// perpendicular to it, is lower than the upper bound. Evaluates them, unless a direction near the inclined one was
     /// evaluated; `false` too if a limit is reached. `center_tolerance`: for spheres, metres, see
     /// [`SphereFit::is_confirmed_twice`].
     fn is_lowest(
@@ -416,8 +416,8 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             if self.limit().is_some() {
                 return Ok(false);
             }
-            let tilted = n + direction * CONFIRM_TILT_RAD;
-            let sample = self.evaluate(&(tilted / tilted.norm()))?;
+            let inclined = n + direction * CONFIRM_ANGLE_RAD;
+            let sample = self.evaluate(&(inclined / inclined.norm()))?;
             if sample.h < before - MIN_GAIN_GAPS * tolerance {
                 return Ok(false);
             }

@@ -16,8 +16,8 @@
 //! 3. *Refinement*: climbs and support calls in turn. It ends if the bounds meet, or if no point is above the portal.
 //!
 //! Departures. Both steps take a known difference if one is far enough, and evaluate the callbacks otherwise.
-//! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is tilted
-//! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`TILT_GROWTH`]),
+//! XenoCollide evaluates directions perpendicular to the ray. Here the direction of the upper bound is inclined
+//! towards that perpendicular, by an angle of the order of upper bound / distance from the ray ([`SLOPE_GROWTH`]),
 //! so that the portal of a shallow contact is small and close to the minimum; where the upper bound is large beside the
 //! length of the ray, that perpendicular itself ([`FAR_UPPER_REL`]). If v1 is near the ray, the portal is a
 //! *ring*: the support points of three directions around one that the caller chooses ([`NearRay`]). A caller whose ray
@@ -49,16 +49,16 @@ pub const WIDEST_RING_TAN: f64 = 1.732_050_807_568_877_2;
 /// to 13 % more instructions; with 0.15, boxes at medium depth take 11 % more, and spheres 8 % more support points; by
 /// the upper bound alone, boxes and icosahedra of every depth take 4 % more.
 const SHALLOW_REL: f64 = 0.25;
-/// The first tilt in discovery, in units of upper bound / distance from the ray, and the factor by which the tilt grows
+/// The first slope in discovery, in units of upper bound / distance from the ray, and the factor by which the slope grows
 /// after each attempt that finds no point on the other side of the ray. Insensitive: 1.3 to 1.5; 1.15 takes 4 % more
 /// support points in intersection tests. Without growth nearly touching spheres take up to 17 support points, not 15.
-const TILT_GROWTH: f64 = 1.4;
-/// The largest tilt in discovery is the larger of this many distances of v1 from the ray and [`WIDEST_TILT_EDGES`] lengths of
+const SLOPE_GROWTH: f64 = 1.4;
+/// The largest slope in discovery is the larger of this many distances of v1 from the ray and [`WIDEST_SLOPE_EDGES`] lengths of
 /// the edge v1 v2, divided by the length of the ray in D. Measured: 4 in place of 3 takes 1 % fewer support points for the
 /// global minimum, and 13 % more for a local one of hulls, whose portals then extend into other valleys.
-const WIDEST_TILT_DISTANCES: f64 = 3.0;
-/// See [`WIDEST_TILT_DISTANCES`]. Measured: without the edge 21 % more support points.
-const WIDEST_TILT_EDGES: f64 = 0.25 * WIDEST_TILT_DISTANCES;
+const WIDEST_SLOPE_DISTANCES: f64 = 3.0;
+/// See [`WIDEST_SLOPE_DISTANCES`]. Measured: without the edge 21 % more support points.
+const WIDEST_SLOPE_EDGES: f64 = 0.25 * WIDEST_SLOPE_DISTANCES;
 /// The upper bound, in lengths of the ray in D, above which [`discover`] evaluates the perpendicular to the ray at once, where
 /// its caller allows that. Off the middle of a wide plate the line of the centers is nearly parallel to the plate, its
 /// support value is as large as the plate, and its direction far from the minimum's. Measured (support points of boxes
@@ -228,8 +228,8 @@ pub fn is_shallow<D: Difference>(query: &SupportQuery<'_, D>) -> bool {
 /// Directions that the discovery evaluates if v1 is near the ray.
 #[derive(Clone, Copy)]
 pub enum NearRay<'a> {
-    /// A [`ring`] around this unit axis with the tangent `tilt`; the ray need not cross the portal.
-    Ring { axis: &'a Vec3, tilt: f64 },
+    /// A [`ring`] around this unit axis with the tangent `slope`; the ray need not cross the portal.
+    Ring { axis: &'a Vec3, slope: f64 },
     /// Perpendicular to the ray: the ray must cross the portal, whose edges may be as short as the
     /// tolerance.
     Perpendicular,
@@ -272,7 +272,7 @@ impl OpenPortal {
         let way = self.towards_ray - ray * ray.dot(&self.towards_ray);
         self.towards_ray = normalise_unscaled(&way).unwrap_or_else(|| perpendicular(ray));
         self.height = 0.0;
-        // A tilt would be too small to find another point.
+        // A slope would be too small to find another point.
         self.failures = MAX_FAILURES;
     }
 
@@ -323,7 +323,7 @@ impl OpenPortal {
         None
     }
 
-    /// Returns the next direction, of any length: that of the upper bound, tilted towards the ray; of a large upper bound, and
+    /// Returns the next direction, of any length: that of the upper bound, inclined towards the ray; of a large upper bound, and
     /// after [`MAX_FAILURES`] failures, the perpendicular to the ray. `length`: approximate length of the ray in D, metres.
     #[inline(always)]
     fn next_dir(&self, upper: &SupportPlane, length: f64) -> Vec3 {
@@ -331,18 +331,18 @@ impl OpenPortal {
         let norm = self.towards_ray.norm();
         // The distance of the corners from the ray.
         let off = -self.height / norm;
-        let mut tilt = f64::INFINITY;
+        let mut slope = f64::INFINITY;
         if self.failures < MAX_FAILURES && !(upper.depth > self.largest_upper) {
             // One product, after the maximum: codegen. (Measured: with two a hit takes 30 instructions more.)
-            let distances = WIDEST_TILT_DISTANCES / WIDEST_TILT_EDGES * off;
-            let widest = WIDEST_TILT_EDGES * distances.max(edge) / length;
-            tilt = lesser(TILT_GROWTH * upper.depth / off, widest);
+            let distances = WIDEST_SLOPE_DISTANCES / WIDEST_SLOPE_EDGES * off;
+            let widest = WIDEST_SLOPE_EDGES * distances.max(edge) / length;
+            slope = lesser(SLOPE_GROWTH * upper.depth / off, widest);
             for _ in 0..self.failures {
-                tilt *= TILT_GROWTH;
+                slope *= SLOPE_GROWTH;
             }
         }
-        if tilt > 0.0 && tilt < f64::INFINITY {
-            upper.dir + self.towards_ray * (tilt / norm)
+        if slope > 0.0 && slope < f64::INFINITY {
+            upper.dir + self.towards_ray * (slope / norm)
         } else {
             self.towards_ray
         }
@@ -371,8 +371,8 @@ pub fn discover<D: Difference, const N: usize>(
     trace::stage("discovery");
     let mut open = OpenPortal::new(set.farthest_vertex(ray), ray, largest_upper);
     if !(-open.height > near2) {
-        if let NearRay::Ring { axis, tilt } = near_ray {
-            if let Some(portal) = ring(query, set, axis, tilt)? {
+        if let NearRay::Ring { axis, slope } = near_ray {
+            if let Some(portal) = ring(query, set, axis, slope)? {
                 return Ok(Some(portal));
             }
             (open.towards_ray, open.height) = (perpendicular(ray), 0.0);
@@ -433,7 +433,7 @@ fn evaluate_towards_ray<D: Difference, const N: usize>(
     Ok(Some(if is_higher { sample.vertex() } else { known }))
 }
 
-/// Evaluates three directions around unit `axis`, tilted by the tangent `tilt`, at most [`WIDEST_RING_TAN`]. Returns their
+/// Evaluates three directions around unit `axis`, inclined by the tangent `slope`, at most [`WIDEST_RING_TAN`]. Returns their
 /// points as a portal; `None` if the set is full, or if the three points are nearly on a line.
 // Cold: codegen, see README.
 #[cold]
@@ -442,20 +442,20 @@ pub fn ring<D: Difference, const N: usize>(
     query: &mut SupportQuery<'_, D>,
     set: &mut VertexSet<N>,
     axis: &Vec3,
-    tilt: f64,
+    slope: f64,
 ) -> Result<Option<Portal>, Stop> {
     trace::stage("ring");
     let [e1, e2] = tangents(axis);
     let half = 0.75_f64.sqrt();
     // Also for NaN.
-    let tilt = lesser(tilt, WIDEST_RING_TAN);
+    let slope = lesser(slope, WIDEST_RING_TAN);
     let turns = [[-0.5, half], [-0.5, -half], [1.0, 0.0]];
     let mut corners = [Vertex::default(); 3];
     for (corner, turn) in corners.iter_mut().zip(turns) {
         if set.is_full() {
             return Ok(None);
         }
-        let n = axis + (e1 * turn[0] + e2 * turn[1]) * tilt;
+        let n = axis + (e1 * turn[0] + e2 * turn[1]) * slope;
         *corner = query.evaluate(set, &(n / n.norm()))?.vertex();
     }
     let (x, y) = (corners[0].w - corners[2].w, corners[1].w - corners[2].w);
@@ -575,7 +575,7 @@ mod tests {
             0.5 * gap * length,
             NearRay::Ring {
                 axis: &ray,
-                tilt: (2.0 * gap / length).sqrt(),
+                slope: (2.0 * gap / length).sqrt(),
             },
         )
         .ok()??;

@@ -174,7 +174,7 @@ impl<D: Difference> ClosestPointsSearch<'_, '_, D> {
             if !is_step {
                 continue;
             }
-            let limited = self.limit_tilt(&dir).filter(|_| !was_limited);
+            let limited = self.limit_angle(&dir).filter(|_| !was_limited);
             was_limited = limited.is_some();
             if let Some(n) = limited {
                 is_step = false;
@@ -220,7 +220,7 @@ impl<D: Difference> ClosestPointsSearch<'_, '_, D> {
 
     /// Returns the direction [`MAX_EXTRAPOLATION_TAN`] from the best plane's normal towards unit `dir`; `None` if `dir`
     /// itself is within that angle.
-    fn limit_tilt(&self, dir: &Vec3) -> Option<Vec3> {
+    fn limit_angle(&self, dir: &Vec3) -> Option<Vec3> {
         let best = self.query.upper.dir;
         let along = dir.dot(&best);
         let perpendicular = dir - best * along;

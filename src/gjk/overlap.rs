@@ -251,8 +251,8 @@ fn find_enclosing_portal<D: Difference, const N: usize>(
     let ray = -inner / distance;
     let length = distance + query.upper.depth;
     let gap = query.scale.contact_eps();
-    let tilt = (2.0 * gap / length).sqrt();
-    let ring = NearRay::Ring { axis: &ray, tilt };
+    let slope = (2.0 * gap / length).sqrt();
+    let ring = NearRay::Ring { axis: &ray, slope };
     let near2 = 0.5 * gap * length;
     let Some(mut portal) = discover(
         query,

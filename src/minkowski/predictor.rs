@@ -7,7 +7,7 @@
 //! No reference is known to us. The *allowed gap* is the largest difference of the bounds at which a query stops.
 //!
 //! 1. *Sphere*: the least support value of the sphere fits ([`SphereFit`]).
-//! 2. *Arc*, of a search for bounds: the direction of the upper bound is tilted towards a face until the chord of its support
+//! 2. *Arc*, of a search for bounds: the direction of the upper bound is inclined towards a face until the chord of its support
 //!    point and the new one is as close to the origin as the allowed gap permits: with the radius of a confirmed sphere fit,
 //!    else with that of an *arc*, two samples between which e and f nearly agree, and which need be on no sphere.
 //! 3. *Smooth D*, of a search for a minimum: Newton's step ([`newton_step`]).
@@ -162,16 +162,16 @@ impl Predictor {
         self.newton.filter(|_| self.failures < MAX_FAILURES)
     }
 
-    /// Returns the direction of the upper bound, tilted towards the unit normal of a face, and the least support value that
+    /// Returns the direction of the upper bound, inclined towards the unit normal of a face, and the least support value that
     /// is predicted there, metres. `None` if the surface of D is no arc there, if the angle to the normal is less than the
-    /// tilt, or not acute. The interior point may be a corner.
+    /// slope, or not acute. The interior point may be a corner.
     ///
     /// On a sphere of radius ρ, with the origin at the distance e = ρ − upper from its center, a chord between the
     /// angles α and γ from the direction of the upper bound is at least as far from the origin as the upper bound if
     /// (γ − α)² ρ <= (γ + α)² e: the next corner is at γ = r α, r = (1 + k) / (1 − k), k² = e / ρ. Corners at equal
     /// angles lie on a circle; the first circle is as wide as the gap allows. Without a confirmed fit ρ is that of an arc
     /// ([`arc_radius`]), the lowest point of which may be farther from the upper bound than the circle: then that is next.
-    fn tilted_from_lowest<const N: usize>(
+    fn inclined_from_lowest<const N: usize>(
         &self,
         set: &VertexSet<N>,
         corners: &[Vertex; 3],
@@ -218,15 +218,15 @@ impl Predictor {
         let ratio = lesser((1.0 + k) / (1.0 - k), MAX_CIRCLE_RATIO);
         // Faces as wide as the first circle are within the gap.
         let first = 2.0 * (gap / rho).sqrt();
-        let (mut tilt, mut value) = (larger(ratio * least, first), upper.depth);
+        let (mut slope, mut value) = (larger(ratio * least, first), upper.depth);
         let shift = -upper.point.v.dot(&way) / (rho - upper.depth);
-        if !is_sphere && shift > tilt {
-            (tilt, value) = (shift, value - 0.5 * (rho - upper.depth) * shift * shift);
+        if !is_sphere && shift > slope {
+            (slope, value) = (shift, value - 0.5 * (rho - upper.depth) * shift * shift);
         }
-        if !(sine > tilt * along) {
+        if !(sine > slope * along) {
             return None;
         }
-        let dir = lowest + way * tilt;
+        let dir = lowest + way * slope;
         let (model, dir) = (Model::Arc, dir / dir.norm());
         Some(Prediction { model, dir, value })
     }
@@ -253,8 +253,9 @@ impl Predictor {
             }
         }
         let is_used = self.failures < MAX_FAILURES;
-        let tilted = is_used.then(|| self.tilted_from_lowest(set, corners, upper, &normal, gap));
-        tilted.flatten().unwrap_or(Prediction {
+        let inclined =
+            is_used.then(|| self.inclined_from_lowest(set, corners, upper, &normal, gap));
+        inclined.flatten().unwrap_or(Prediction {
             model: Model::Face,
             dir: normal,
             value: upper.depth,
@@ -429,7 +430,7 @@ mod tests {
     /// An ellipsoid fits no sphere. Between x, along which its support value is least, and a direction 0.1 rad towards y it is
     /// an arc of the radius 0.35² / 0.25.
     #[test]
-    fn a_direction_is_tilted_along_an_arc_of_no_sphere() {
+    fn a_direction_is_inclined_along_an_arc_of_no_sphere() {
         let body = ellipsoid(
             Vec3::new(0.25, 0.35, 0.5),
             Rotation::identity(),
@@ -444,10 +445,10 @@ mod tests {
         let radius = arc_radius(&set, corners[1].pair, &query.upper).unwrap();
         assert!((radius - 0.49).abs() < 0.01, "{radius}");
         let (gap, normal) = (1e-4, Vec3::new(1.0, 0.05, 0.0).normalize());
-        let tilted = |upper: &SupportPlane| {
-            Predictor::default().tilted_from_lowest(&set, &corners, upper, &normal, gap)
+        let inclined = |upper: &SupportPlane| {
+            Predictor::default().inclined_from_lowest(&set, &corners, upper, &normal, gap)
         };
-        let Prediction { dir: n, value, .. } = tilted(&query.upper).unwrap();
+        let Prediction { dir: n, value, .. } = inclined(&query.upper).unwrap();
         let first = 2.0 * (gap / radius).sqrt();
         assert!(
             (n.y / n.x - first).abs() < 1e-6 && n.z.abs() < ROUNDING && value == 0.25,
@@ -456,7 +457,7 @@ mod tests {
         // If the lowest point of the arc is farther from the upper bound, that is next.
         let mut upper = query.upper;
         upper.point.v.y -= 0.01;
-        let Prediction { dir: n, value, .. } = tilted(&upper).unwrap();
+        let Prediction { dir: n, value, .. } = inclined(&upper).unwrap();
         let shift = 0.01 / (radius - 0.25);
         assert!(
             (n.y / n.x - shift).abs() < 1e-6 && value < 0.25,
@@ -482,7 +483,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tilted_direction_is_between_the_lowest_and_the_normal() {
+    fn an_inclined_direction_is_between_the_lowest_and_the_normal() {
         let md = balls();
         let (mut query, mut set) = (SupportQuery::new(&md, None, 0.0), VertexSet::EMPTY);
         let corners = corners_around_x(&mut query, &mut set);
@@ -497,25 +498,25 @@ mod tests {
             (Vec3::x(), false),
             (Vec3::y(), false),
         ] {
-            let tilted =
-                predictor.tilted_from_lowest(&set, &corners, &upper, &normal.normalize(), gap);
+            let inclined =
+                predictor.inclined_from_lowest(&set, &corners, &upper, &normal.normalize(), gap);
             assert!(
-                tilted.is_none_or(|Prediction { dir: n, value, .. }| (n.norm() - 1.0).abs()
+                inclined.is_none_or(|Prediction { dir: n, value, .. }| (n.norm() - 1.0).abs()
                     < ROUNDING
                     && n.x > normal.normalize().x
                     && n.y > 0.0
                     && value == upper.depth)
             );
-            assert!(expected || tilted.is_none(), "{tilted:?}");
+            assert!(expected || inclined.is_none(), "{inclined:?}");
         }
         let near = [Vec3::x(); 3].map(|n| query.evaluate(&mut set, &n).unwrap().vertex());
         let n = Vec3::new(1.0, 1.0, 0.0).normalize();
-        let tilted = predictor
-            .tilted_from_lowest(&set, &near, &upper, &n, gap)
+        let inclined = predictor
+            .inclined_from_lowest(&set, &near, &upper, &n, gap)
             .unwrap()
             .dir;
         // The first circle is as wide as the gap allows.
         let first = 2.0 * (gap / 0.75).sqrt();
-        assert!((tilted.y / tilted.x - first).abs() < 1e-6, "{tilted}");
+        assert!((inclined.y / inclined.x - first).abs() < 1e-6, "{inclined}");
     }
 }

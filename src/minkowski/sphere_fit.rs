@@ -13,8 +13,7 @@
 //!    of the vertex set is compared with the entry of the upper bound.
 //! 2. *Prediction.* The core points of a face's corners are a triangle of the core of D. If the origin is on its
 //!    outer side, the foot w predicts the least support value ρ − |w|, along −w / |w|; otherwise ρ + |w|, along
-//!    w / |w|.
-//!    If w is the origin within rounding, each direction around the face's normal has the value ρ.
+//!    w / |w|. If w is the origin within rounding, it is ρ, along the normal of the face.
 //! 3. *Confirmation* of an exact fit: two directions show the same center of each sphere.
 //!
 //! Outputs. [`SphereFit::radius`]: a guess. A direction of [`SphereFit::predict`] must be evaluated; the support value

@@ -16,14 +16,14 @@
 use crate::math::{EPSILON, Vec3, larger, lesser, max_abs, perpendicular};
 use crate::minkowski::support::SupportMap;
 
-/// The number of directions: those of a hemisphere, their opposites, and the former tilted.
+/// The number of directions: those of a hemisphere, their opposites, and the former inclined.
 const NUM_DIRECTIONS: usize = 3 * NUM_HEMISPHERE;
 /// The number of directions of a hemisphere: the three axes and a spiral.
 const NUM_HEMISPHERE: usize = 64;
-/// The angle of the tilt, radians. For a ball of radius r the point of the tilted direction is r · tilt² / 2 below
-/// the support plane of the original one; greater noise is detected. Derived: tilt² / 2 is 23 ulps
+/// The angle to the latter, radians. For a ball of radius r the point of the inclined direction is r · angle² / 2 below
+/// the support plane of the original one; greater noise is detected. Derived: angle² / 2 is 23 ulps
 /// (single precision: 4).
-const TILT_RAD: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
+const INCLINATION_RAD: f64 = if cfg!(feature = "single") { 1e-3 } else { 1e-7 };
 /// The largest noise that counts as rounding, in ulps of the largest coordinate. Derived: the rotation and the
 /// translation of a point by a callback, and its product with a direction, times two.
 const ROUNDING_ULPS: f64 = 32.0;
@@ -89,7 +89,7 @@ fn directions() -> Directions {
         };
         dirs[i] = n;
         dirs[NUM_HEMISPHERE + i] = -n;
-        dirs[2 * NUM_HEMISPHERE + i] = (n + perpendicular(&n) * TILT_RAD).normalize();
+        dirs[2 * NUM_HEMISPHERE + i] = (n + perpendicular(&n) * INCLINATION_RAD).normalize();
         (cos, sin) = (
             cos * GOLDEN.0 - sin * GOLDEN.1,
             cos * GOLDEN.1 + sin * GOLDEN.0,

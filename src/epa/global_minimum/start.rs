@@ -12,7 +12,7 @@ use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::portal::{NearRay, Portal, WIDEST_RING_TAN, discover, refine, ring};
 use crate::trace;
 
-/// The largest tangent of the tilt of the ring of a contact that is not deep: 19°. Measured: without a limit, two spheres 0.3
+/// The largest slope of the ring of a contact that is not deep: 19°. Measured: without a limit, two spheres 0.3
 /// of a diameter deep take 32 support points in place of 20, and hulls of 642 corners 5 % more; hulls of 162 corners take
 /// 3 % more with 0.25, 8 % more with 0.15.
 const WIDE_RING_TAN: f64 = 0.35;
@@ -80,7 +80,7 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let lowest = query.upper.dir;
         let near_ray = NearRay::Ring {
             axis: &lowest,
-            tilt: ring_radius / length,
+            slope: ring_radius / length,
         };
         let Some(mut portal) = discover(
             query,
