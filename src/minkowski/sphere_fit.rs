@@ -295,17 +295,19 @@ fn fit_radii(first: &FitSample, second: &FitSample, tolerance: f64) -> [f64; 2] 
             length2[lane] += d * d;
         }
     }
+    let min_turn2 = (1.0 - tolerance * tolerance) * turn2;
+    let is_parallel = [0, 1].map(|lane| along[lane] * along[lane] > min_turn2 * length2[lane]);
     let mut radii = [0.0; 2];
-    let min_cos2 = 1.0 - tolerance * tolerance;
+    // One branch for the vertices of polytopes, whose signs are as good as random.
+    if !(is_parallel[0] | is_parallel[1]) {
+        return radii;
+    }
     for lane in 0..2 {
-        let is_parallel = along[lane] * along[lane] > min_cos2 * turn2 * length2[lane];
-        if !(is_parallel && along[lane] > 0.0 && turn2 > MIN_ANGLE2) {
-            continue;
-        }
         let off = (0..3).fold(0.0, |off, axis| {
             off + sum[axis] * (to[axis][lane] - from[axis][lane])
         });
-        if off.abs() <= tolerance * along[lane] {
+        let is_round = off.abs() <= tolerance * along[lane];
+        if is_parallel[lane] && is_round && along[lane] > 0.0 && turn2 > MIN_ANGLE2 {
             radii[lane] = along[lane] / turn2;
         }
     }
