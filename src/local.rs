@@ -495,8 +495,7 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
             return Ok(());
         }
         let center = self.query.center;
-        let face = self.portal.plane(Exact::Nothing).unit();
-        let dir = face.map_or(self.query.upper.dir, |face| face.normal);
+        let dir = normalise_unscaled(&-v).unwrap_or(self.query.upper.dir);
         contains_origin(self.query, self.set, center, &dir, false).map(|_| ())
     }
 }
