@@ -20,8 +20,8 @@ typedef struct {
 } bound_t;
 
 /* At 2 mm the pairs themselves turn by 0.06 degrees a frame, deeper by 0.05. One path at 0.3 m is in a flat valley, where the
- * depth changes by 1e-5 m in a degree: without it 0.06, 0.8 and 0.1. */
-static const bound_t BOUNDS[] = {{2e-4, .04, .3, .03}, {2e-3, .06, .6, .08}, {.05, .08, .6, .09}, {.3, .12, 4, .15}};
+ * depth changes by 1e-5 m in a degree. */
+static const bound_t BOUNDS[] = {{2e-4, .04, .3, .03}, {2e-3, .06, .6, .08}, {.05, .08, .6, .09}, {.3, .1, 2.5, .13}};
 
 static ccd_t settings(double tolerance)
 {
