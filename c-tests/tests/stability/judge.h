@@ -224,7 +224,6 @@ static inline int is_unit(const double n[3]) { return fabs(sqrt(truth_dot3(n, n)
 
 enum {
     MPR_POINTS = 160,     /* support points after which a depth of MPR is only within TOL_MPR_CAPPED */
-    MINIMUM_POINTS = 340, /* support points after which a minimum is given up: the compatible calls cannot report it */
     MOST_POINTS = 400     /* support points of any query at CCD_INIT's tolerance relative to the size */
 };
 
@@ -293,7 +292,7 @@ static inline int judge_guarantees(const entry_t *e, const answer_t *x, double v
         && ((e->call == CALL_PROVEN && !(gap <= q->tol + floor + rounding)) || (e->call == CALL_PENETRATION && !(gap <= mpr + floor + rounding))))
         faults |= FAULT_GAP;
     if (entry_is_minimum(e)) {
-        const int at_limit = x->code == CCD_LIMIT || (!x->has_bounds && (q->unproven || points >= MINIMUM_POINTS));
+        const int at_limit = x->code == CCD_LIMIT || (!x->has_bounds && q->unproven);
         const double within = q->limit == LIMIT_ALL_AROUND || at_limit ? fmax(q->tol, tolerance(TOL_MPR) * least) : q->tol;
         if (!(x->depth <= least + within + rounding) && !(at_limit && q->limit == LIMIT_ANYWHERE))
             faults |= FAULT_NOT_MINIMUM;

@@ -85,6 +85,9 @@ static int is_called(const task_t *task, int k)
     }
 }
 
+/* Returns whether an entry tells that a proof reaches the limit, which compatible calls cannot report. */
+static int is_proof(int k) { return entries[k].call == CALL_PROVEN && entries[k].state == STATE_NONE; }
+
 /* Judges the answers of all entry points, [tolerance][entry]. A lower value of h that the normal of one of them has is a
  * better upper bound of the truth. */
 static void judge_answers(const task_t *task, answer_t answers[][ENTRIES])
@@ -106,8 +109,7 @@ static void judge_answers(const task_t *task, answer_t answers[][ENTRIES])
         q.limit = task->limit != LIMIT_ON_CURVES ? task->limit : pair_may_reach_limit(task->pair, q.tol) ? LIMIT_ALLOWED : LIMIT_NEVER;
         q.touching |= task->is_touching;
         for (int k = 0; k < (int)ENTRIES; k++)
-            q.unproven |= entries[k].call == CALL_PROVEN && entries[k].state == STATE_NONE && is_called(task, k)
-                && answers[t][k].code == CCD_LIMIT;
+            q.unproven |= is_proof(k) && answers[t][k].code == CCD_LIMIT;
         for (int k = 0; k < (int)ENTRIES; k++) {
             const entry_t *e = &entries[k];
             if (!is_called(task, k) || answers[t][k].code == ANSWER_NONE)
@@ -134,7 +136,7 @@ static void judge_pair(const task_t *task, ccd_warm_t *warm, int kept)
             const entry_t *e = &entries[k];
             ccd_warm_t state;
             answers[t][k].code = ANSWER_NONE;
-            if (!is_called(task, k) || (e->is_libccd && t > 0))
+            if (!(is_called(task, k) || is_proof(k)) || (e->is_libccd && t > 0))
                 continue;
             answers[t][k] = call_entry(e, &p->a, &p->b, e->is_libccd ? libccd_tolerance : task->tol[t], p->truth.n, &state);
             if (warm && t == kept)
