@@ -655,7 +655,7 @@ mod tests {
         }
     }
 
-    /// The face has the support point of the refined direction for a corner: the mean distance is 0.024 mm, and 0.090 mm without.
+    /// The face has the support point of the refined direction for a corner: the mean distance is 0.024 mm, and 0.058 mm without.
     #[test]
     fn witness_points_of_ellipsoids_are_apart_along_the_direction() {
         let mut r = Random::new(93);

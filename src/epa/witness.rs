@@ -10,28 +10,47 @@ use crate::minkowski::support::SupportPoint;
 use crate::minkowski::support_query::SupportPlane;
 use crate::minkowski::vertex_set::{Vertex, VertexSet};
 
-/// Returns the witness points of the upper bound: those of the point of the face closest to the foot, depth · dir; and the
-/// square of its distance from the foot, m².
+/// Returns the witness points of the upper bound. They are those of the point closest to the foot, depth · dir, on
+/// one of these triangles:
+///
+/// 1. the face, if that point is close enough to the foot ([`max_foot_distance2`] of `gap`, metres);
+/// 2. otherwise, if closer, the face with one corner replaced by the support point of the direction.
+///
+/// Returns them with the square of that distance, m².
 #[inline(always)]
 pub fn witness_points<const N: usize>(
     upper: &SupportPlane,
     interior: &SupportPoint,
     set: &VertexSet<N>,
     face: &[Vertex; 3],
+    gap: f64,
 ) -> ([Vec3; 2], f64) {
     let foot = upper.dir * upper.depth;
-    let [a, b, c] = face.each_ref().map(|v| v.w);
-    let closest = triangle(&foot, &a, &b, &c);
+    let closest = |[a, b, c]: &[Vec3; 3]| triangle(&foot, a, b, c);
+    let corners = face.each_ref().map(|v| v.w);
+    let mut best = closest(&corners);
+    let mut replaced = None;
+    if best.distance2 > max_foot_distance2(upper, gap) {
+        for i in 0..3 {
+            let mut triangle = corners;
+            triangle[i] = upper.point.v;
+            let other = closest(&triangle);
+            if other.distance2 < best.distance2 {
+                (best, replaced) = (other, Some(i));
+            }
+        }
+    }
     let mut points = [Vec3::zeros(); 2];
-    for (weight, v) in closest.weights.iter().zip(face) {
-        let point = match v.pair.is_interior() {
-            true => *interior,
-            false => set.point(v.pair),
+    for (i, (weight, v)) in best.weights.iter().zip(face).enumerate() {
+        let point = match replaced {
+            Some(k) if k == i => upper.point,
+            _ if v.pair.is_interior() => *interior,
+            _ => set.point(v.pair),
         };
         points[0] += point.v1 * *weight;
         points[1] += point.v2 * *weight;
     }
-    (points, closest.distance2)
+    (points, best.distance2)
 }
 
 /// Returns the square of the distance from the foot, m², within which a face is as good as any other.

@@ -148,7 +148,8 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let upper = &self.query.upper;
         let mut points = [Vec3::zeros(); 2];
         if self.request.wants_points {
-            let closest = |face: &[Vertex; 3]| witness_points(upper, &self.interior, set, face);
+            let closest =
+                |face: &[Vertex; 3]| witness_points(upper, &self.interior, set, face, gap);
             let distance2;
             (points, distance2) = closest(face);
             if distance2 > max_foot_distance2(upper, gap) {
