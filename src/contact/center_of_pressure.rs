@@ -369,7 +369,7 @@ mod tests {
         for &(x, y, drop) in corners {
             outline.push(Vec3::new(x, y, drop), 0.0);
         }
-        assert_eq!(outline.close(0.0, 0.0), Footprint::Area);
+        assert_eq!(outline.close(0.0, 0.0, 0.0), Footprint::Area);
         outline
     }
 

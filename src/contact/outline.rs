@@ -3,9 +3,8 @@
 
 //! The outline of an object in a contact: vertices in order around the deepest point, from the search to the integrals.
 
-use crate::contact::tuning::COMMON_DROP_FACTOR;
 use crate::geometry::polygon::{Vec2, offset};
-use crate::math::{Vec3, ZERO, larger, lesser};
+use crate::math::{Vec3, ZERO, larger};
 use core::ops::Deref;
 
 /// The area that an outline encloses.
@@ -74,18 +73,16 @@ impl Outline {
             .take(self.len)
     }
 
-    /// Makes the corners an outline around the deepest point: raises them by the drop that all have in common, moves them
+    /// Makes the corners an outline around the deepest point: raises them by `common`, the drop that all have, moves them
     /// outwards by `margin`, metres, and encloses the deepest point. Each end of an edge, and a point, becomes two vertices
     /// or more. An outline that is nowhere farther than `point_size` from the deepest point is a point.
     #[inline(always)]
-    pub fn close(&mut self, margin: f64, point_size: f64) -> Footprint {
+    pub fn close(&mut self, margin: f64, point_size: f64, common: f64) -> Footprint {
         let last = *self.vertex(self.len.wrapping_sub(1));
         if self.len > 1 && are_same(&self.vertices[0], &last, margin) {
             self.len -= 1;
         }
-        let add = |(least, sum): (f64, Vec2), v: &Vec3| (lesser(v.z, least), sum + v.xy());
-        let (least, sum) = self.iter().fold((1.0, Vec2::zeros()), add);
-        let common = COMMON_DROP_FACTOR * least;
+        let sum = self.iter().fold(Vec2::zeros(), |sum, v| sum + v.xy());
         if self.len > 2 {
             let mean = sum * (1.0 / self.len as f64);
             let far = self.vertices[0].xy() - mean;
@@ -222,13 +219,13 @@ mod tests {
                 let (x, y) = (x * cos - y * sin, x * sin + y * cos);
                 outline.push(Vec3::new(x, y, 0.0), 0.0);
             }
-            assert_eq!(outline.close(1e-3, 0.0), Footprint::Area, "{round}");
+            assert_eq!(outline.close(1e-3, 0.0, 0.0), Footprint::Area, "{round}");
             for (p, q) in outline.sides() {
                 assert!(area2(p, q) > 0.0, "{round} {outline:?}");
             }
         }
         let mut point = Outline::EMPTY;
         point.push(Vec3::x(), 0.0);
-        assert_eq!(point.close(1e-3, 2.0), Footprint::Point);
+        assert_eq!(point.close(1e-3, 2.0, 0.0), Footprint::Point);
     }
 }

@@ -22,7 +22,7 @@ use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::outwards;
 use crate::contact::outline::{Footprint, Outline, are_same};
 use crate::contact::tilted_support::TiltedSupport;
-use crate::contact::tuning::{COMMON_DROP_FACTOR, CORNER_SHIFT_REL, MAX_DROP, POINT_REL};
+use crate::contact::tuning::{CORNER_SHIFT_REL, MAX_DROP, POINT_REL};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Difference, Fault};
@@ -36,8 +36,6 @@ struct SideRule<'f, 'o> {
     face: Option<&'f FlatFace<'o>>,
     /// The area of the first corners, m².
     area: f64,
-    /// The drop that all corners have in common.
-    common: f64,
     /// The larger of the extent and the root of the area, metres.
     size: f64,
 }
@@ -63,9 +61,10 @@ const HALF: Level = Level {
 };
 
 impl SideRule<'_, '_> {
-    /// Returns whether a vertex beyond the side from `p` to `q` could move the mean of the corners.
+    /// Returns whether a vertex beyond the side from `p` to `q` could move the mean of the corners. `common`: the drop that all
+    /// vertices have in common.
     #[inline(always)]
-    fn matters(&self, p: &Vec3, q: &Vec3, level: &Level) -> bool {
+    fn matters(&self, p: &Vec3, q: &Vec3, level: &Level, common: f64) -> bool {
         let moves_mean = |missing: f64, lever2: f64| {
             let allowed = level.shift * self.size * (self.area + missing);
             // False for NaN.
@@ -74,7 +73,7 @@ impl SideRule<'_, '_> {
         let length2 = offset(p, q).norm_squared();
         // Half of the triangle of the deepest point and the ends, times the height of a vertex between them that has the
         // common drop alone.
-        let height = lesser(lesser(p.z, q.z) - self.common, 1.0);
+        let height = lesser(lesser(p.z, q.z) - common, 1.0);
         let raised = 0.25 * p.xy().perp(&q.xy()).abs() * larger(height, 0.0);
         let is_open = moves_mean(level.triangle * length2, length2)
             | moves_mean(raised, 0.25 * (p.xy() + q.xy()).norm_squared());
@@ -94,6 +93,7 @@ impl<D: Difference> TiltedSupport<'_, D> {
         mut face: Option<&mut FlatFace>,
         outline: &mut Outline,
     ) -> Result<Footprint, Fault> {
+        self.least_drop.set(1.0);
         let mut first = [ZERO; 4];
         for (axis, corner) in first.iter_mut().enumerate() {
             *corner = self.corner_along_axis(object, axis);
@@ -104,13 +104,11 @@ impl<D: Difference> TiltedSupport<'_, D> {
                 }
             }
         }
-        let least = first.iter().fold(1.0, |least, v| lesser(v.z, least));
         let diagonals = [offset(&first[0], &first[2]), offset(&first[1], &first[3])];
         let area = 0.5 * diagonals[0].perp(&diagonals[1]).abs();
-        let mut rule = SideRule {
+        let rule = SideRule {
             face: face.as_deref(),
             area,
-            common: COMMON_DROP_FACTOR * least,
             size: larger(self.extent, area.sqrt()),
         };
         for k in 0..4 {
@@ -119,7 +117,6 @@ impl<D: Difference> TiltedSupport<'_, D> {
             let Some(m) = self.corner_beyond(object, p, q, &SIDE, &rule) else {
                 continue;
             };
-            rule.common = lesser(rule.common, COMMON_DROP_FACTOR * m.z);
             if let Some(corner) = self.corner_beyond(object, p, &m, &HALF, &rule) {
                 outline.push(corner, self.vertex_offset);
             }
@@ -129,7 +126,11 @@ impl<D: Difference> TiltedSupport<'_, D> {
             }
         }
         self.validate()?;
-        Ok(outline.close(self.vertex_offset, POINT_REL * self.extent))
+        Ok(outline.close(
+            self.vertex_offset,
+            POINT_REL * self.extent,
+            self.common_drop(),
+        ))
     }
 
     /// Finds the vertex along an axis or its opposite, in the overlap if the surface is curved.
@@ -154,7 +155,7 @@ impl<D: Difference> TiltedSupport<'_, D> {
         rule: &SideRule,
     ) -> Option<Vec3> {
         let is_same = |a: &Vec3, b: &Vec3| are_same(a, b, self.vertex_offset);
-        if is_same(p, q) || !rule.matters(p, q, level) {
+        if is_same(p, q) || !rule.matters(p, q, level, self.common_drop()) {
             return None;
         }
         let out = outwards(p, q, self.depth_over_tilt, 0.0);

@@ -8,7 +8,9 @@
 //! contact plane is its component along the tilted direction, divided by the tangent of the tilt.
 
 use crate::contact::frame::ContactFrame;
-use crate::contact::tuning::{DROP_TOL, MAX_TILT_TAN, TILT_FACTOR, VERTEX_OFFSET_REL};
+use crate::contact::tuning::{
+    COMMON_DROP_FACTOR, DROP_TOL, MAX_TILT_TAN, TILT_FACTOR, VERTEX_OFFSET_REL,
+};
 use crate::geometry::polygon::Vec2;
 use crate::math::{EPSILON, Vec3, larger, lesser};
 use crate::minkowski::support::{Difference, Fault};
@@ -37,6 +39,9 @@ pub struct TiltedSupport<'q, D> {
     pub vertex_offset: f64,
     /// The sum of all evaluated points' distances from the origin, to the fourth power.
     squares: Cell<f64>,
+    /// The least drop of the object's vertices that were evaluated, at most 1. A point on a chord between two of them is none:
+    /// it has a drop of one depth beside a face too.
+    pub least_drop: Cell<f64>,
 }
 
 impl<'q, D: Difference> TiltedSupport<'q, D> {
@@ -58,6 +63,7 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
             depth_over_tilt: depth / tilt,
             vertex_offset: larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent),
             squares: Cell::new(0.0),
+            least_drop: Cell::new(1.0),
         }
     }
 
@@ -94,7 +100,15 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         self.squares.set(self.squares.get() + square * square);
         let [e1, e2] = &self.frame.axes;
         let drop = (self.half_gap - self.frame.normal.dot(&p) * sign) * self.per_depth;
-        Vec3::new(e1.dot(&p), e2.dot(&p), larger(drop, 0.0))
+        let drop = larger(drop, 0.0);
+        self.least_drop.set(lesser(drop, self.least_drop.get()));
+        Vec3::new(e1.dot(&p), e2.dot(&p), drop)
+    }
+
+    /// Returns the drop that the vertices of an object have in common, in depths.
+    #[inline(always)]
+    pub fn common_drop(&self) -> f64 {
+        COMMON_DROP_FACTOR * self.least_drop.get()
     }
 
     /// Returns an error if a point that was evaluated is not finite, or so far away that squares of squares overflow.
