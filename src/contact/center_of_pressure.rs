@@ -47,7 +47,7 @@ use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::ContactFrame;
 use crate::contact::outline::{Footprint, Outline, area2};
 use crate::contact::tilted_support::TiltedSupport;
-use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE, MAX_KNOWN};
+use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
 use crate::minkowski::support::{Difference, Fault, SupportPoint};
@@ -153,8 +153,7 @@ fn integrate<D: Difference, const N: usize>(
     }
     let other = 1 - smaller % 2;
     let mut face = FlatFace::new(&outline, 2.0 * support.vertex_offset);
-    let first_known = set.len().saturating_sub(MAX_KNOWN);
-    support.for_each_flat(set, other, first_known, |v| _ = face.add(v));
+    support.for_each_flat(set, other, |v| _ = face.add(v));
     let mut other_outline = Outline::EMPTY;
     let footprint = match face.contains_outline() {
         true => Footprint::Plane,

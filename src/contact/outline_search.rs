@@ -22,7 +22,7 @@ use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::outwards;
 use crate::contact::outline::{Footprint, Outline, are_same};
 use crate::contact::tilted_support::TiltedSupport;
-use crate::contact::tuning::{CORNER_SHIFT_REL, MAX_DROP, POINT_REL};
+use crate::contact::tuning::{CORNER_SHIFT_REL, MAX_DROP};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Difference, Fault};
@@ -128,7 +128,7 @@ impl<D: Difference> TiltedSupport<'_, D> {
         self.validate()?;
         Ok(outline.close(
             self.vertex_offset,
-            POINT_REL * self.extent,
+            CORNER_SHIFT_REL * self.extent,
             self.common_drop(),
         ))
     }

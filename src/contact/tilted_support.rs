@@ -127,13 +127,12 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         out.dot(&v.xy()) - v.z * self.depth_over_tilt
     }
 
-    /// Calls `f` with the known vertices of an object in its support plane, from index `first` on.
+    /// Calls `f` with the known vertices of an object in its support plane.
     #[inline(always)]
     pub fn for_each_flat<const N: usize>(
         &self,
         set: &VertexSet<N>,
         object: usize,
-        first: usize,
         mut f: impl FnMut(Vec2),
     ) {
         // The set has the vertices of obj2 with the opposite sign.
@@ -142,7 +141,7 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         let origin = self.frame.origin * sign;
         let ([e1, e2], n) = (self.frame.axes.map(|axis| axis * sign), self.frame.normal);
         let least = n.dot(&origin) + self.half_gap - DROP_TOL / self.per_depth;
-        for [x, y, z] in set.coords_from(first) {
+        for [x, y, z] in set.coords_from(0) {
             let p = Vec3::new(x[k], y[k], z[k]);
             if n.dot(&p) >= least {
                 let p = p - origin;

@@ -6,29 +6,25 @@
 
 /// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
 /// a drop of one depth at that tilt (R T²/2), and all corners are found of a face whose drop grows by 0.7 depths over its
-/// width. Measured (`pos pressure`): with 1.6 the error of a lying cylinder is 7.8 mm in place of 6.7 mm.
+/// width. Measured (`pos pressure`): with 1.6 the error of a lying cylinder is 6.9 mm in place of 6.0 mm.
 pub const TILT_FACTOR: f64 = 1.4;
 /// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 31, and the first directions of a face have it. With
 /// a larger one surfaces beside a face are taken for it; a smaller one underestimates the size of curved objects.
 pub const MAX_TILT_TAN: f64 = 0.25;
-/// Drop above which a tilt is lowered to the chord's, in depths: at T a surface whose radius is the extent has one. Measured:
-/// with 1.3 19 of 30,204 checks of `pos pressure` fail, with 2 the position of a cone on its side jumps by 14 mm (11 mm) where
-/// the axes of the contact change.
+/// Drop above which a tilt is lowered to the chord's, in depths: at T a surface whose radius is the extent has one. Measured
+/// (`pos_flat axes 1000`): with 1.96 the position of a cone on its side jumps by 14 mm in place of 9 mm where the axes of the
+/// contact change.
 pub const MAX_DROP: f64 = 1.7;
-/// Largest shift of the mean of an outline's corners by one that is not searched, relative to the size. Measured: with 0.04
-/// positions on faces of eight corners jump, for 0.2 support points less a recorded hit; with 0.02 that hit takes 0.3 more.
+/// Largest shift of the mean of an outline's corners by one that is not searched, relative to the size; an outline that is
+/// smaller is a point. Measured: with 0.04 positions on faces of eight corners jump, for 0.2 support points less a recorded hit;
+/// with 0.02 that hit takes 0.3 more.
 pub const CORNER_SHIFT_REL: f64 = 0.03;
-/// Number of most recent known vertices that may prove a plane.
-pub const MAX_KNOWN: usize = 16;
-/// Largest size of an outline that counts as a point, relative to the extent: the position is within a quarter of it.
-/// Insensitive: 0.002 to 0.02 tried.
-pub const POINT_REL: f64 = 0.25 * CORNER_SHIFT_REL;
 /// Largest drop that counts as none, in depths: an error of a third of this fraction of the half width. Insensitive: 0.01 to
 /// 0.1 tried.
-pub const DROP_TOL: f64 = 0.05;
-/// Fraction of the least drop of all corners that is subtracted from each: with radius R the drop is R T²/2 all around. Measured
-/// (`pos pressure`): with 0 positions jump by 6 to 9 mm and errors are less, with 0.6 one by 7 mm, with 0.9 the error of a lying
-/// cylinder is 8.1 mm in place of 6.7 mm.
+pub const DROP_TOL: f64 = CORNER_SHIFT_REL;
+/// Fraction of the least drop of all evaluated vertices that is subtracted from each: with radius R the drop is R T²/2 all
+/// around. Measured (`pos pressure`, `pos rounded`): with 0 lying capsules jump by 9 mm and the error of rounded edges is 1.08 mm
+/// in place of 0.25 mm, with 0.9 the error of a lying capsule is 5.2 mm in place of 4.0 mm.
 pub const COMMON_DROP_FACTOR: f64 = 0.75;
 /// Distance by which vertices are moved outwards, in depths, so that an edge has an area and the deepest point is inside;
 /// closer vertices are the same. Small compared with the flank of an edge ([`crate::contact::center_of_pressure`]).
