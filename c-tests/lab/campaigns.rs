@@ -9,7 +9,7 @@
 //! | `rates` | every category of pairs, both tie rules, on libccd and on this library | pairs a category: 2000 |
 //! | `wide` | every call on bodies that are hard for one method or another | pairs a row, row, first pair, seed: 1000 -1 0 1 |
 //! | `states` | every kind of warm start state (`tests/extension/warm_states.c`) | pairs a call, changed states: 400 1000000 |
-//! | `positions` | how far `pos` is from the objects (`tests/extension/pos.c`) | the share of two million hits: 1 |
+//! | `positions` | how far `pos` is from the objects (`tests/extension/pos.c`) | N, for one in N of two million hits: 1 |
 //! | `jumps` | how often `pos` jumps, by shape (`tests/extension/pos.c`) | steps, seed: 300000 1 |
 //! | `touches` | objects that touch (`tests/contract/touches.c`) | random pairs: 200000 |
 //! | `truth` | the truth (`truth.c`) against itself, the certified pairs and the recorded contacts | random pairs, step: 100000 1 |

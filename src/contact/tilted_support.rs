@@ -141,7 +141,7 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         let origin = self.frame.origin * sign;
         let ([e1, e2], n) = (self.frame.axes.map(|axis| axis * sign), self.frame.normal);
         let least = n.dot(&origin) + self.half_gap - DROP_TOL / self.per_depth;
-        for [x, y, z] in set.coords_from(0) {
+        for [x, y, z] in set.all_coords() {
             let p = Vec3::new(x[k], y[k], z[k]);
             if n.dot(&p) >= least {
                 let p = p - origin;

@@ -191,13 +191,13 @@ impl<const N: usize> VertexSet<N> {
         self.coords.each_ref().map(|coords| coords[i])
     }
 
-    /// Returns the coordinates of the entries from index `first` on, like [`VertexSet::coords`].
+    /// Returns the coordinates of all entries, like [`VertexSet::coords`].
     #[inline(always)]
-    pub fn coords_from(&self, first: usize) -> impl Iterator<Item = [[f64; 2]; 3]> + '_ {
+    pub fn all_coords(&self) -> impl Iterator<Item = [[f64; 2]; 3]> + '_ {
         let [x, y, z] = self
             .coords
             .each_ref()
-            .map(|coords| coords.get(first..self.len).unwrap_or(&[]));
+            .map(|coords| coords.get(..self.len).unwrap_or(&[]));
         x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z])
     }
 

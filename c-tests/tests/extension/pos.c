@@ -153,6 +153,7 @@ static shape_t slender_body(int kind, ccd_real_t verts[3 * VERTICES])
 
 static void check_near(int every, int seed)
 {
+    every = every > 0 ? every : 1;
     static const int kinds[] = {SHAPE_POLYTOPE, SHAPE_BOX, SHAPE_POLYTOPE, SHAPE_CYLINDER, SHAPE_CONE, SHAPE_CAPSULE, SHAPE_ELLIPSOID};
     const long hits = HITS / every;
     long farther = 0;
