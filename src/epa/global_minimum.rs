@@ -12,9 +12,9 @@
 //! 4. *Certificate*: if the tetrahedron of interior point and portal contains the ball around the origin whose radius
 //!    is the upper bound less the allowed gap ([`GapLimit`](crate::minkowski::tolerance::GapLimit)), the minimum is
 //!    proven. Most shallow contacts end here.
-//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, where a support point replaces a center near the
-//!    origin; if the polytope does not come to contain the origin, or rounding ends it, from a
-//!    tetrahedron of GJK, then from one of four wide directions. Full buffers are replaced by larger ones.
+//! 5. *Polytope*: EPA ([`crate::epa::expand`]) from that tetrahedron, or from one of four wide directions, in place of steps
+//!    3 and 4, if the centers are close to each other; if the polytope does not come to contain the origin, or rounding ends
+//!    it, from a tetrahedron of GJK, then from one of four wide directions. Full buffers are replaced by larger ones.
 //! 6. *Direction*: up to four more directions where the bounds differ by more than the tolerance ([`crate::epa::direction`]).
 //! 7. *Result*: bounds, direction and witness points of the portal or polytope with the least gap.
 //!
@@ -47,9 +47,9 @@ use crate::math::Vec3;
 use crate::minkowski::predictor::Predictor;
 use crate::minkowski::support::{Difference, SupportPoint};
 use crate::minkowski::support_query::{Stop, SupportPlane, SupportQuery};
-use crate::minkowski::vertex_set::{Vertex, VertexSet};
+use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 use crate::minkowski::warm_start::WarmStart;
-use crate::portal::{FAR_UPPER_REL, Portal};
+use crate::portal::FAR_UPPER_REL;
 use crate::types::{Solution, Status};
 
 /// The input of a query besides the support functions.
@@ -68,8 +68,8 @@ pub struct EpaRequest<'a> {
 enum Outcome {
     /// The minimum is proven.
     Proven(Proof),
-    /// The portal from which the polytope starts; `None` if none was found.
-    Open(Option<Portal>),
+    /// The tetrahedron from which the polytope starts; `None` if none was found.
+    Open(Option<[VertexPair; 4]>),
 }
 
 /// The state of a query.
@@ -125,7 +125,7 @@ pub fn global_minimum<D: Difference>(
     };
     let (proof, mut status) = match solver.run_without_polytope(set)? {
         Outcome::Proven(proof) => (proof, Status::Converged),
-        Outcome::Open(portal) => solver.expand_from(set, portal.as_ref(), &mut arena)?,
+        Outcome::Open(start) => solver.expand_from(set, start, &mut arena)?,
     };
     let Proof {
         upper: depth,
@@ -173,17 +173,26 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
             Some(_) => None,
             None => Some(self.find_interior(set, &mut ray)?),
         };
+        if self.is_central() {
+            let dir = self.query.upper.dir;
+            let apex = set.farthest(&dir);
+            if let Some(start) = self.find_wide_tetrahedron(set, &dir, apex)? {
+                return Ok(Outcome::Open(Some(start)));
+            }
+        }
         let portal = self.find_portal(set, &ray)?;
         // Not into a full set: it would replace the last entry, which may be a corner.
         if let Some((dir, point)) = opposite.as_ref().filter(|_| !set.is_full()) {
             set.push(dir, point);
         }
-        if let Some(portal) = &portal {
-            if let Some(proof) = self.certify(set, portal)? {
-                return Ok(Outcome::Proven(proof));
-            }
+        let Some(portal) = portal else {
+            return Ok(Outcome::Open(None));
+        };
+        if let Some(proof) = self.certify(set, &portal)? {
+            return Ok(Outcome::Proven(proof));
         }
-        Ok(Outcome::Open(portal))
+        let [a, b, c] = portal.corners.map(|v| v.pair);
+        Ok(Outcome::Open(Some([VertexPair::INTERIOR, a, b, c])))
     }
 
     /// Returns the gap that is allowed below the upper bound, metres.
@@ -195,14 +204,14 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
     }
 
     /// Step 5. Expands polytopes from up to three starts, until one contains the origin and is not ended by rounding: the
-    /// tetrahedron of interior point and portal, that of GJK, and that of four wide directions. Measured (`judged hard 2000
+    /// tetrahedron `first` of steps 2 to 4, that of GJK, and that of four wide directions. Measured (`judged hard 2000
     /// 18`, seeds 11 to 14): with GJK's from the other side in place of the last 3 of 8,000 nearly coincident pairs end
     /// up to 63 % too deep, because the same flat tetrahedron is found.
     #[inline(never)]
     fn expand_from(
         &mut self,
         set: &mut VertexSet<SMALL_VERTICES>,
-        portal: Option<&Portal>,
+        first: Option<[VertexPair; 4]>,
         arena: &mut Option<&mut dyn Arena>,
     ) -> Result<(Proof, Status), Stop> {
         // The proof with the least gap.
@@ -212,15 +221,18 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
                 set.truncate(SMALL_VERTICES - START_VERTICES);
             }
             let dir = self.query.upper.dir;
-            let start = match (attempt, portal) {
-                (0, None) => continue,
-                (0, Some(Portal { corners: [a, b, c] })) => [self.find_apex(set)?, *a, *b, *c],
-                (1, _) => self.find_gjk_tetrahedron(set, &-dir)?,
-                _ => match self.find_wide_tetrahedron(set, &dir)? {
-                    Some(start) => start,
-                    None => break,
-                },
+            let start = match attempt {
+                0 => first,
+                1 => Some(self.find_gjk_tetrahedron(set, &-dir)?),
+                _ => {
+                    let apex = self.query.evaluate(set, &dir)?.pair;
+                    self.find_wide_tetrahedron(set, &dir, apex)?
+                }
             };
+            let Some(start) = start else {
+                continue;
+            };
+            let start = start.map(|pair| set.vertex(pair, &self.interior.v));
             let mut polytope = EpaPolytope::<SMALL_FACES>::blank(self.query.scale.size());
             let (found, status) = match self.expand_small(set, &mut polytope, &start)? {
                 _ if polytope.is_blank() => continue,
