@@ -174,7 +174,7 @@ impl<'q, D: Difference> SupportQuery<'q, D> {
     /// Evaluates unit `n` by the tilt rule and returns what `then` makes of the plane. `tilt`: not 0 for the direction of a state,
     /// which is evaluated as it is, so that a pair at rest does not turn. `confirms`: true to confirm a separating plane.
     /// The path that most tolerances take is inlined and ends in a `then` of its own: a plane that a function may have
-    /// returned, and a [`Direction`], would be stored for the other paths. Codegen, see README.
+    /// returned, and a [`Direction`], would be stored for the other paths, and their results are copied, for the same reason. Codegen, see README.
     #[inline(always)]
     fn evaluate_plane<T, E: From<Fault>>(
         &mut self,
@@ -184,11 +184,13 @@ impl<'q, D: Difference> SupportQuery<'q, D> {
         then: impl FnOnce(&mut Self, &SupportPlane) -> Result<T, E>,
     ) -> Result<T, E> {
         if tilt > 0.0 || !self.tilt_rule.allows_largest(&self.scale) {
-            return self.continue_with_tilt(*n, tilt, confirms, then);
+            let rare = self.continue_with_tilt(*n, tilt, confirms, then)?;
+            return Ok(rare);
         }
         let plane = self.evaluate_tilted(n, MAX_TILT_RAD)?;
         if self.may_separate(n, &plane) {
-            return self.continue_untilted(*n, then);
+            let rare = self.continue_untilted(*n, then)?;
+            return Ok(rare);
         }
         then(self, &plane)
     }
