@@ -207,15 +207,16 @@ impl OutlineRay {
         let scale = 1.0 / pq;
         let (weight_p, weight_q) = (larger(vq, 0.0) * scale, larger(pv, 0.0) * scale);
         let drop = v.z + weight_p * p.z + weight_q * q.z;
-        let mut bounds = [weight_p + weight_q, weight_p + weight_q, drop];
-        bounds[own % 2] = 1.0;
-        let k = usize::from(bounds[1] > bounds[0]);
-        let active_bound = if drop > bounds[k] { 2 } else { k };
+        let weight = weight_p + weight_q;
+        // No array that is indexed by `own`: it would be stored, and its parts loaded together. Codegen, see README.
+        let (one, two) = if own == 0 { (1.0, weight) } else { (weight, 1.0) };
+        let largest = larger(two, one);
+        let k = usize::from(two > one);
         Self {
             at: v.xy(),
-            bounds,
-            active_bound,
-            end: outline_at(v.xy(), bounds[active_bound], drop),
+            bounds: [one, two, drop],
+            active_bound: if drop > largest { 2 } else { k },
+            end: outline_at(v.xy(), larger(drop, largest), drop),
         }
     }
 
@@ -312,8 +313,9 @@ impl PressureSum {
         let mut at = [0, (0..last).find(contains_ray).unwrap_or(last)];
         let [q, r] = [vertex(1, at[1]), vertex(1, at[1] + 1)];
         let crosses = [area2(q, p), area2(p, r), area(1, at[1])];
-        let mut last = OutlineRay::new(p, 0, [q, r], crosses);
-        for _ in 0..one.len() + two.len() {
+        // The last ray and the next one, in turns: not copied. Codegen, see README.
+        let mut rays = [OutlineRay::new(p, 0, [q, r], crosses); 2];
+        for i in 0..one.len() + two.len() {
             let nexts = [vertex(0, at[0] + 1), vertex(1, at[1] + 1)];
             let turn = area2(nexts[0], nexts[1]);
             // The outline with the next vertex, counterclockwise.
@@ -322,9 +324,8 @@ impl PressureSum {
             let v = nexts[own];
             let p = vertex(other, at[other]);
             let crosses = [area2(p, v), turn.abs(), area(other, at[other])];
-            let next = OutlineRay::new(v, own, [p, nexts[other]], crosses);
-            self.add_cone(&last, &next);
-            last = next;
+            rays[(i + 1) % 2] = OutlineRay::new(v, own, [p, nexts[other]], crosses);
+            self.add_cone(&rays[i % 2], &rays[(i + 1) % 2]);
             let next = at[own] + 1;
             at[own] = if next < outlines[own].len() { next } else { 0 };
         }
