@@ -209,7 +209,11 @@ impl OutlineRay {
         let drop = v.z + weight_p * p.z + weight_q * q.z;
         let weight = weight_p + weight_q;
         // No array that is indexed by `own`: it would be stored, and its parts loaded together. Codegen, see README.
-        let (one, two) = if own == 0 { (1.0, weight) } else { (weight, 1.0) };
+        let (one, two) = if own == 0 {
+            (1.0, weight)
+        } else {
+            (weight, 1.0)
+        };
         let largest = larger(two, one);
         let k = usize::from(two > one);
         Self {

@@ -10,7 +10,8 @@
 //! 2. Insert the known difference farthest along the face's normal, without a callback, if it closes at least
 //!    [`INSERT_GAIN_REL`] of the gap between the face and the upper bound: of all known vertices, in a deep overlap with more
 //!    than [`MAX_SCANNED`] entries of those of the face's corners.
-//! 3. Otherwise evaluate the callbacks, along the face's normal or along the direction that the predictor proposes. Insert the point if it is above the face.
+//! 3. Otherwise evaluate the callbacks, along the face's normal or along the direction that the predictor proposes
+//!    ([`Predictor::evaluate_beyond`]). Insert the point if it is above the face.
 //! 4. If no point above the face is found along its normal, the support value may lower the upper bound. If it does
 //!    not, the loop ends with [`Status::Rounding`].
 //!

@@ -12,8 +12,8 @@
 //!    else with that of an *arc*, two samples between which e and f nearly agree, and which need be on no sphere.
 //! 3. *Smooth D*, of a search for a minimum: Newton's step ([`newton_step`]).
 //! 4. *Face*: the normal, without a prediction, and after one that found no point above the face.
-//! 5. *Judgement*: a support value that is lower than predicted, or not much higher, confirms the model. One that does not
-//!    resets the radii, and after [`MAX_FAILURES`] of them no model is used any more.
+//! 5. *Judgement*: a support value that is lower than predicted, or not much higher, confirms the model. Any other is a
+//!    failure: it resets the radii of fits that are not exact, and after [`MAX_FAILURES`] no model is used any more.
 //!
 //! Outputs. A direction to evaluate; the support value decides.
 
@@ -288,8 +288,7 @@ impl Predictor {
 
     /// Evaluates the support function for a face with this normal, which need not be unit: along the direction that is
     /// proposed, or along the normal. `along_normal`: true if it must be the normal; `corners`, which returns the corners of
-    /// the face, is then not called. `gap`: the allowed difference of the bounds, metres. Returns whether it was the normal,
-    /// too.
+    /// the face, is then not called. `gap`: the allowed difference of the bounds, metres. Returns the model, too.
     ///
     /// # Errors
     /// As [`SupportQuery::evaluate`].
