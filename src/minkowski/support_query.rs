@@ -174,7 +174,8 @@ impl<'q, D: Difference> SupportQuery<'q, D> {
     /// Evaluates unit `n` by the tilt rule and returns what `then` makes of the plane. `tilt`: not 0 for the direction of a state,
     /// which is evaluated as it is, so that a pair at rest does not turn. `confirms`: true to confirm a separating plane.
     /// The path that most tolerances take is inlined and ends in a `then` of its own: a plane that a function may have
-    /// returned, and a [`Direction`], would be stored for the other paths, and their results are copied, for the same reason. Codegen, see README.
+    /// returned, and a [`Direction`], would be stored for the other paths. For the same reason their results are copied.
+    /// Codegen, see README.
     #[inline(always)]
     fn evaluate_plane<T, E: From<Fault>>(
         &mut self,

@@ -7,7 +7,7 @@
  *                              their axis by symmetry. And turning about the vertical by 0.01 degrees a step, from N / 10.
  *   pos_flat leaning [N SEED]  Discs, cones and half balls on their rims, where the direction of the lean turns by 0.01 degrees a
  *                              step, for N steps: seen from the body pos must not move, and be the center of pressure of its
- *                              round face, a sum over strips. A disc whose pos is beside the line of the lean keeps rocking.
+ *                              round face, a sum over strips.
  *   pos_flat axes [N SEED]     N pairs turned by 2e-7 rad across the plane at which the axes of a contact change: seen from the
  *                              floor pos must not move. */
 
