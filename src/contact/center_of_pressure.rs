@@ -45,8 +45,8 @@
 
 use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::ContactFrame;
+use crate::contact::inclined_support::InclinedSupport;
 use crate::contact::outline::{Footprint, Outline, area2};
-use crate::contact::tilted_support::TiltedSupport;
 use crate::contact::tuning::{DEEP_RANGE, FLANK_SLOPE};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, larger, lesser};
@@ -110,7 +110,7 @@ fn center_of_pressure<D: Difference, const N: usize>(
     let frame = ContactFrame::new(&hit.normal, &hit.middle());
     let extents = extents(set, &frame.origin, centers);
     let smaller = usize::from(extents[1] < extents[0]);
-    let support = TiltedSupport::new(md, frame, extents[smaller], [hit.depth, depth]);
+    let support = InclinedSupport::new(md, frame, extents[smaller], [hit.depth, depth]);
     let mut sum = PressureSum::new(depth, support.vertex_offset);
     let has_area = integrate(&support, smaller, set, &mut sum)?;
     let center = sum.center();
@@ -142,7 +142,7 @@ fn extents<const N: usize>(
 /// Integrates the local depth of a contact. Returns false if the deepest point is the center of pressure.
 #[inline(always)]
 fn integrate<D: Difference, const N: usize>(
-    support: &TiltedSupport<D>,
+    support: &InclinedSupport<D>,
     smaller: usize,
     set: &VertexSet<N>,
     sum: &mut PressureSum,
@@ -513,8 +513,8 @@ mod tests {
         let (unaided, calls) = position(&body, depth, &[]);
         let found = (unaided.x.abs() - 0.25 * (0.5 - share)).abs();
         assert!(found < 1e-3, "{unaided:?} {share}");
-        let tilts = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
-        let dirs = |tilt| tilts.map(|(x, y)| Vec3::new(tilt * x, tilt * y, 1.0).normalize());
+        let slopes = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+        let dirs = |slope| slopes.map(|(x, y)| Vec3::new(slope * x, slope * y, 1.0).normalize());
         let all = [dirs(0.2), dirs(0.1)].concat();
         let (aided, aided_calls) = position(&body, depth, &all);
         assert!((aided - unaided).norm() < 1e-9, "{aided:?} {unaided:?}");

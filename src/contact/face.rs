@@ -10,7 +10,7 @@ use nalgebra::UnitComplex;
 
 /// Largest number of corners of a face: one more than eight, so that a face of eight is known to be complete.
 pub const MAX_FACE_CORNERS: usize = 9;
-/// The first three tilt directions, unit.
+/// The first three slope directions, unit.
 pub const THREE_DIRECTIONS: [Vec2; 3] = [
     Vec2::new(1.0, 0.0),
     Vec2::new(-0.5, 0.866_025_403_784_438_6),
@@ -22,8 +22,8 @@ pub const MAX_CONTACTS: usize = 2 * MAX_FACE_CORNERS;
 /// A support vertex in the contact frame (z: its drop), and its direction.
 #[derive(Clone, Copy, Default)]
 pub struct FaceSample {
-    /// The tilt of its direction.
-    pub tilt: Vec2,
+    /// The slope of its direction.
+    pub slope: Vec2,
     /// The vertex.
     pub found: Vec3,
     /// The core: the corner without its rounding, if `has_core`; else the vertex.
@@ -37,10 +37,10 @@ pub struct FaceSample {
 }
 
 impl FaceSample {
-    /// Makes the sample of a tilted direction and its vertex.
-    pub fn new(tilt: Vec2, found: Vec3) -> Self {
+    /// Makes the sample of an inclined direction and its vertex.
+    pub fn new(slope: Vec2, found: Vec3) -> Self {
         Self {
-            tilt,
+            slope,
             found,
             corner: found,
             ..Self::default()
@@ -63,8 +63,8 @@ pub struct ContactFace {
     pub rounded_halfwidth: f64,
     /// The samples that found the corners, in their order.
     pub samples: FixedVec<FaceSample, MAX_FACE_CORNERS>,
-    /// The tilt that finds corners, a tangent.
-    pub tilt_tan: f64,
+    /// The slope that finds corners, a tangent.
+    pub slope: f64,
     /// True if all corners are known and sharp.
     pub is_complete: bool,
     /// Motion since the last query, if the face is the cached one.

@@ -4,20 +4,20 @@
 //! Finds the contact face of one object: its corners are support vertices along directions close to the normal.
 //!
 //! The *drop* of a point is its distance below the support plane of the normal n. The *size* is the largest distance
-//! between the vertices found at the tilt [`MAX_TILT_TAN`].
+//! between the vertices found at the slope [`MAX_SLOPE`].
 //!
 //! 1. *Face.* The face consists of the points with a drop of at most the slop. The support vertex of n + t, with a
-//!    small tilt t perpendicular to n, maximises t·r − drop(r), r being its position in the contact frame. At
+//!    small slope t perpendicular to n, maximises t·r − drop(r), r being its position in the contact frame. At
 //!    |t| = 2 slop / size, a corner with a drop of half the slop has at least the value of any point size / 4 behind
-//!    it along t. If the vertex has a drop greater than the slop, it is not in the face, and half the tilt is
+//!    it along t. If the vertex has a drop greater than the slop, it is not in the face, and half the slope is
 //!    evaluated.
 //! 2. *All corners.* For each side of two corners, the outward direction in which both have the same value is
 //!    evaluated; it finds a corner beyond that side. A face of k corners is complete after 3 + k + (k − 3) support calls.
 //!    A curved face becomes an inscribed polygon, whose sides are refined in a fixed order, so that the polygon
 //!    moves with the object.
-//!    Known failure (1e-5 of faces): tilted faces of which only an edge and one more corner are within the slop.
-//!    That corner is missed, because every tilt finds the edge or a vertex with a drop greater than the slop.
-//! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are evaluated with half the tilt: on
+//!    Known failure (1e-5 of faces): inclined faces of which only an edge and one more corner are within the slop.
+//!    That corner is missed, because every slope finds the edge or a vertex with a drop greater than the slop.
+//! 3. *Rounded corners.* A corner returned by two directions is sharp. Others are evaluated with half the slope: on
 //!    a rounded corner of radius R the vertex is p(t) = c + R t, and the *core* c = 2 p(t/2) − p(t) replaces it, if
 //!    p(3t/4) is midway between p(t/2) and p(t). Displacements greater than sqrt(slop · size / 2) are not treated as
 //!    rounding of a corner.
@@ -25,13 +25,13 @@
 //!    moved as one rigid body, so did the corners; else the face is searched anew.
 //!
 //! Related: Bullet (`btConvexConvexAlgorithm`) and MuJoCo (`multiccd`) rotate an object by small angles and repeat
-//! the whole query; here only the support function is evaluated along tilted normals.
+//! the whole query; here only the support function is evaluated along inclined normals.
 
 use crate::contact::face::{ContactFace, FaceSample, MAX_FACE_CORNERS, Motion, THREE_DIRECTIONS};
 use crate::contact::frame::{ContactFrame, outwards};
 use crate::contact::manifold_cache::{CachedFace, ManifoldCache};
 use crate::contact::tuning::{
-    MAX_TILT_TAN, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_REL, ROUND_CORNER_SLOPS,
+    MAX_SLOPE, MIN_SLOP_REL, MIN_SLOP_ROUNDINGS, ROUND_CORNER_REL, ROUND_CORNER_SLOPS,
 };
 use crate::geometry::fixed_vec::FixedVec;
 use crate::geometry::polygon::{Polygon, Vec2, offset};
@@ -93,24 +93,24 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         }
     }
 
-    /// Evaluates the object along the tilted outward normal.
-    fn evaluate(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
-        let dir = self.frame.tilted_direction(self.sign, tilt);
+    /// Evaluates the object along the inclined outward normal.
+    fn evaluate(&mut self, slope: Vec2) -> Result<FaceSample, Fault> {
+        let dir = self.frame.inclined_direction(self.sign, slope);
         let p = self.object.support(&dir);
         self.calls += 1;
         self.face.coord_eps = larger(self.face.coord_eps, 8.0 * EPSILON * max_abs(&p));
         let mut found = self.frame.project(&p)?;
         found.z = self.face.support_height - self.sign * found.z;
-        Ok(FaceSample::new(tilt, found))
+        Ok(FaceSample::new(slope, found))
     }
 
-    /// Evaluates a candidate for a corner: with the tilt and, if that vertex is not in the face, with half of it.
-    fn evaluate_corner(&mut self, tilt: Vec2) -> Result<FaceSample, Fault> {
-        let new = self.evaluate(tilt)?;
+    /// Evaluates a candidate for a corner: with the slope and, if that vertex is not in the face, with half of it.
+    fn evaluate_corner(&mut self, slope: Vec2) -> Result<FaceSample, Fault> {
+        let new = self.evaluate(slope)?;
         if new.found.z <= self.face.slop {
             return Ok(new);
         }
-        self.evaluate(tilt * 0.5)
+        self.evaluate(slope * 0.5)
     }
 
     /// Confirms the cached face or, if it has changed, evaluates the support plane.
@@ -164,7 +164,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let mut size = 0.0;
         let mut wide = [self.first; 3];
         for i in 0..3 {
-            let new = self.evaluate(THREE_DIRECTIONS[i] * MAX_TILT_TAN)?;
+            let new = self.evaluate(THREE_DIRECTIONS[i] * MAX_SLOPE)?;
             for known in &wide {
                 size = larger(size, offset(&known.found, &new.found).norm());
             }
@@ -173,10 +173,10 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         // At most the size of the face, at least some rounding errors.
         self.face.slop = slop.min(size).max(MIN_SLOP_ROUNDINGS * self.face.coord_eps);
         if size > self.face.coord_eps {
-            self.face.tilt_tan = lesser(2.0 * self.face.slop / size, MAX_TILT_TAN);
+            self.face.slope = lesser(2.0 * self.face.slop / size, MAX_SLOPE);
             for mut new in wide {
                 if new.found.z > self.face.slop {
-                    new = self.evaluate_corner(new.tilt * (self.face.tilt_tan / MAX_TILT_TAN))?;
+                    new = self.evaluate_corner(new.slope * (self.face.slope / MAX_SLOPE))?;
                 }
                 if new.found.z <= self.face.slop && !self.mark_if_found(&new) {
                     self.face.samples.push(new);
@@ -210,8 +210,8 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         let samples = &self.face.samples;
         let known = (0..samples.len()).find(|i| self.is_same(samples.cyclic(*i), new));
         if let Some(i) = known {
-            let tilt_change = (samples.cyclic(i).tilt - new.tilt).norm();
-            let is_sharp = tilt_change >= 0.25 * self.face.tilt_tan;
+            let slope_change = (samples.cyclic(i).slope - new.slope).norm();
+            let is_sharp = slope_change >= 0.25 * self.face.slope;
             self.face.samples.cyclic_mut(i).has_core |= is_sharp;
         }
         known.is_some()
@@ -245,9 +245,9 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
             return Ok(None);
         }
         let [a, b] = [i, i + 1].map(|i| self.face.samples.cyclic(i).found);
-        let (length, tilt_tan) = (offset(&a, &b).norm(), self.face.tilt_tan);
-        let out = outwards(&a, &b, 1.0 / tilt_tan, 0.0);
-        let new = self.evaluate_corner(out * tilt_tan)?;
+        let (length, slope) = (offset(&a, &b).norm(), self.face.slope);
+        let out = outwards(&a, &b, 1.0 / slope, 0.0);
+        let new = self.evaluate_corner(out * slope)?;
         if new.found.z > self.face.slop || self.mark_if_found(&new) {
             return Ok(None);
         }
@@ -267,10 +267,10 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
     /// Returns the least height of a corner beyond a side, metres. Rounding errors and remaining roundings of corners
     /// are smaller.
     fn min_corner_height(&self) -> f64 {
-        self.face.coord_eps + self.face.tilt_tan * self.face.slop
+        self.face.coord_eps + self.face.slope * self.face.slop
     }
 
-    /// Finds the core of the corner of sample `i`, whose vertex moves in proportion to the tilt if it is rounded.
+    /// Finds the core of the corner of sample `i`, whose vertex moves in proportion to the slope if it is rounded.
     fn find_core(&mut self, i: usize) -> Result<(), Fault> {
         let mut full = *self.face.samples.cyclic(i);
         if full.has_core || self.calls >= MAX_CALLS {
@@ -280,22 +280,22 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         if self.rounded_corner_at(&full).is_some() {
             return Ok(());
         }
-        let scale = self.face.tilt_tan / full.tilt.norm();
+        let scale = self.face.slope / full.slope.norm();
         if scale < 0.5 {
-            // The sample is one of the first directions, with a wide tilt.
-            let new = self.evaluate(full.tilt * scale)?;
+            // The sample is one of the first directions, with a wide slope.
+            let new = self.evaluate(full.slope * scale)?;
             if self.mark_if_found(&new) {
                 return Ok(());
             }
             full = new;
         }
         if self.calls < MAX_CALLS {
-            let near = self.evaluate(full.tilt * 0.5)?;
+            let near = self.evaluate(full.slope * 0.5)?;
             let moved = offset(&near.found, &full.found).norm();
-            let max_moved = self.face.slop / self.face.tilt_tan.sqrt();
+            let max_moved = self.face.slop / self.face.slope.sqrt();
             let may_be_round = !self.is_same(&full, &near) && moved <= max_moved;
             if may_be_round && self.is_round_between(&near, &full)? {
-                full.radius = moved / (full.tilt - near.tilt).norm();
+                full.radius = moved / (full.slope - near.slope).norm();
                 full.corner = near.found * 2.0 - full.found;
                 full.corner.z = larger((4.0 * near.found.z - full.found.z) / 3.0, 0.0);
             }
@@ -308,12 +308,12 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         Ok(())
     }
 
-    /// Returns whether two samples, at a tilt and at half of it, are of one rounded corner, not two sharp ones: their drops
+    /// Returns whether two samples, at a slope and at half of it, are of one rounded corner, not two sharp ones: their drops
     /// are as p(t) has them, and the vertex between them is midway, unless the support call for it is needed for another core.
     fn is_round_between(&mut self, near: &FaceSample, full: &FaceSample) -> Result<bool, Fault> {
         let moved = offset(&near.found, &full.found);
         // c + R t has the drop R t²/2 below c.
-        let drop = 0.75 * moved.dot(&full.tilt);
+        let drop = 0.75 * moved.dot(&full.slope);
         let off = (full.found.z - near.found.z - drop).abs();
         if off > ROUND_CORNER_REL * drop + self.face.coord_eps {
             return Ok(false);
@@ -321,7 +321,7 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
         if self.calls + self.unknown_cores() >= MAX_CALLS {
             return Ok(true);
         }
-        let middle = self.evaluate((near.tilt + full.tilt) * 0.5)?;
+        let middle = self.evaluate((near.slope + full.slope) * 0.5)?;
         let off = offset(&((near.found + full.found) * 0.5), &middle.found).norm();
         Ok(off <= ROUND_CORNER_REL * moved.norm() + self.face.coord_eps)
     }
@@ -356,26 +356,26 @@ impl<'a, S: SupportMap> FaceSearch<'a, S> {
 
     /// Evaluates the cached directions. Returns the motion of the cached face; None if the face has changed.
     fn confirm_cached(&mut self, cached: &CachedFace) -> Result<Option<Motion>, Fault> {
-        for [tilt, ..] in cached.samples() {
-            // Fails for NaN and for a zero tilt too.
-            if !(tilt.norm() > 0.0 && tilt.norm() <= 0.5) {
+        for [slope, ..] in cached.samples() {
+            // Fails for NaN and for a zero slope too.
+            if !(slope.norm() > 0.0 && slope.norm() <= 0.5) {
                 return Ok(None);
             }
-            let new = self.evaluate(tilt)?;
+            let new = self.evaluate(slope)?;
             self.face.samples.push(new);
         }
         let slop = larger(f64::from(cached.slop), self.face.coord_eps);
-        (self.face.slop, self.face.tilt_tan) = (slop, cached.tilt_tan.into());
+        (self.face.slop, self.face.slope) = (slop, cached.slope.into());
         let slack = 0.25 * slop + self.face.coord_eps;
         let Some(motion) = cached.motion(&self.face.samples, slack) else {
             return Ok(None);
         };
-        for (new, [tilt, _, offset]) in self.face.samples.iter_mut().zip(cached.samples()) {
-            let drop = 0.5 * offset.dot(&tilt);
-            new.radius = offset.norm() / tilt.norm();
+        for (new, [slope, _, offset]) in self.face.samples.iter_mut().zip(cached.samples()) {
+            let drop = 0.5 * offset.dot(&slope);
+            new.radius = offset.norm() / slope.norm();
             let offset = motion.rotation * offset;
             new.corner += Vec3::new(offset.x, offset.y, drop);
-            new.tilt = motion.rotation * tilt;
+            new.slope = motion.rotation * slope;
         }
         if cached.is_complete != 0.0 {
             let heights = self.face.samples.iter().map(|s| -s.corner.z);

@@ -63,12 +63,12 @@ impl ContactFrame {
         self.axes[0].cross(&self.axes[1]).dot(&self.normal) > 0.0
     }
 
-    /// Returns the unit direction of the normal (`sign` 1) or its opposite (-1), tilted. `tilt`: the tangents of
+    /// Returns the unit direction of the normal (`sign` 1) or its opposite (-1), inclined. `slope`: the tangents of
     /// the angles towards the two axes.
     #[inline(always)]
-    pub fn tilted_direction(&self, sign: f64, tilt: Vec2) -> Vec3 {
-        let scale = 1.0 / (1.0 + tilt.norm_squared()).sqrt();
-        (self.normal * sign + (self.axes[0] * tilt.x + self.axes[1] * tilt.y)) * scale
+    pub fn inclined_direction(&self, sign: f64, slope: Vec2) -> Vec3 {
+        let scale = 1.0 / (1.0 + slope.norm_squared()).sqrt();
+        (self.normal * sign + (self.axes[0] * slope.x + self.axes[1] * slope.y)) * scale
     }
 
     /// Returns the coordinates of a point along both axes and the normal.

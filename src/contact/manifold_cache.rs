@@ -28,7 +28,7 @@ const MAX_IDS: usize = 8;
 /// Error of the vertices, which are stored as `f32`, relative to the size of the face.
 const F32_REL_TOL: f64 = 4.0 * f32::EPSILON as f64;
 
-/// A direction and its vertex, as x and y of the frame: the tilt, the vertex, and the displacement from that to the
+/// A direction and its vertex, as x and y of the frame: the slope, the vertex, and the displacement from that to the
 /// core of the corner.
 type CachedSample = [[f32; 2]; 3];
 
@@ -40,8 +40,8 @@ pub struct CachedFace {
     len: f32,
     /// The effective slop of the face, metres.
     pub slop: f32,
-    /// The tilt that finds corners, a tangent.
-    pub tilt_tan: f32,
+    /// The slope that finds corners, a tangent.
+    pub slope: f32,
     /// Not 0 if the samples are all corners of a polygon.
     pub is_complete: f32,
     samples: [CachedSample; MAX_FACE_CORNERS],
@@ -70,18 +70,18 @@ pub struct ManifoldCache {
 /// side, three directions for a point, and also the two directions along a segment.
 fn confirming_samples(
     corners: &Polygon<MAX_FACE_CORNERS>,
-    tilt_tan: f64,
+    slope: f64,
 ) -> FixedVec<FaceSample, MAX_FACE_CORNERS> {
     let n = corners.len().max(1);
     let count = [3, 3, 4].get(n).copied().unwrap_or(n);
     let sample = |i: usize| {
         let (last, corner) = (corners.cyclic(i % n + n - 1), corners.cyclic(i % n));
-        let tilt = match n {
-            1 => THREE_DIRECTIONS[i % 3] * tilt_tan,
-            2 if i > 1 => offset(last, corner).normalize() * tilt_tan,
-            _ => outwards(last, corner, 1.0 / tilt_tan, CACHED_LEAN) * tilt_tan,
+        let slope = match n {
+            1 => THREE_DIRECTIONS[i % 3] * slope,
+            2 if i > 1 => offset(last, corner).normalize() * slope,
+            _ => outwards(last, corner, 1.0 / slope, CACHED_LEAN) * slope,
         };
-        FaceSample::new(tilt, *corner)
+        FaceSample::new(slope, *corner)
     };
     (0..count).map(sample).collect()
 }
@@ -90,26 +90,26 @@ impl CachedFace {
     /// Packs the samples that reproduce a face; positions are relative to `origin`.
     fn new(face: &ContactFace, origin: &Vec3) -> Self {
         let samples = if face.is_complete {
-            confirming_samples(&face.corners, face.tilt_tan)
+            confirming_samples(&face.corners, face.slope)
         } else {
             face.samples
         };
         let mut cached = Self {
             len: samples.len() as f32,
             slop: face.slop as f32,
-            tilt_tan: face.tilt_tan as f32,
+            slope: face.slope as f32,
             is_complete: f32::from(u8::from(face.is_complete)),
             ..Self::default()
         };
         for (stored, s) in cached.samples.iter_mut().zip(samples.iter()) {
             let to_core = offset(&s.found, &s.corner);
-            let parts = [s.tilt, offset(origin, &s.found), to_core];
+            let parts = [s.slope, offset(origin, &s.found), to_core];
             *stored = parts.map(|v| [v.x as f32, v.y as f32]);
         }
         cached
     }
 
-    /// Returns the tilt of each sample, its vertex, and the displacement from that to the core.
+    /// Returns the slope of each sample, its vertex, and the displacement from that to the core.
     pub fn samples(&self) -> impl Iterator<Item = [Vec2; 3]> + '_ {
         // NaN and negative lengths become 0.
         let samples = self.samples.iter().take(self.len as usize);

@@ -160,19 +160,19 @@ impl Outline {
             }
         }
         self.repeat_first();
-        let is_gap = |(p, q): (&Vec3, &Vec3)| {
+        let is_open = |(p, q): (&Vec3, &Vec3)| {
             let area = area2(p, q);
             area < 0.0 || area == 0.0 && p.xy().dot(&q.xy()) <= 0.0
         };
-        let gap = self.sides().position(is_gap);
-        if let Some(gap) = gap {
-            let (p, q) = (self.vertex(gap), self.vertex(gap + 1));
+        let open = self.sides().position(is_open);
+        if let Some(open) = open {
+            let (p, q) = (self.vertex(open), self.vertex(open + 1));
             // Opposite to the bisector of the directions to p and q, also if both are on one side.
             let [a, b] = [p, q].map(|v| 1.0 / (v.xy().norm_squared() + f64::MIN_POSITIVE).sqrt());
             let (x, y) = (q.y * b - p.y * a, p.x * a - q.x * b);
             let scale = distance / (x * x + y * y + f64::MIN_POSITIVE).sqrt();
             let mut behind = Vec3::new(x * scale, y * scale, 0.0);
-            let places = self.vertices.iter_mut().skip(gap + 1);
+            let places = self.vertices.iter_mut().skip(open + 1);
             places.for_each(|place| core::mem::swap(place, &mut behind));
             self.len = (self.len + 1).min(MAX_VERTICES);
             self.repeat_first();

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Finds the corners of an object's outline in a contact, all of them support vertices along tilted directions
-//! ([`crate::contact::tilted_support`]).
+//! Finds the corners of an object's outline in a contact, all of them support vertices along inclined directions
+//! ([`crate::contact::inclined_support`]).
 //!
-//! 1. Evaluate four directions at right angles, tilted by T.
-//! 2. Where a vertex is below the overlap, lower the tilt to that of the chord from the deepest point to the vertex, until the
+//! 1. Evaluate four directions at right angles, inclined by T.
+//! 2. Where a vertex is below the overlap, lower the slope to that of the chord from the deepest point to the vertex, until the
 //!    surface proves straight or the vertex is in the overlap.
 //! 3. A side matters if what it may hide moves the mean of the corners: a corner beyond it, in the triangle that the
 //!    directions of its ends allow, or a vertex between its ends that is higher than both.
@@ -15,19 +15,19 @@
 //!    plane contain that outline.
 //!
 //! There are no classes of objects: a face, an edge and a corner are outlines of many corners, two and one; the sides of a
-//! curved outline cease to matter. T is the tilt at which a surface whose radius is the extent has a drop of one depth, and
+//! curved outline cease to matter. T is the slope at which a surface whose radius is the extent has a drop of one depth, and
 //! step 2 finds it for a flatter one. A known vertex is no corner: which vertices are known depends on the search before.
 
 use crate::contact::flat_face::FlatFace;
 use crate::contact::frame::outwards;
+use crate::contact::inclined_support::InclinedSupport;
 use crate::contact::outline::{Footprint, Outline, are_same};
-use crate::contact::tilted_support::TiltedSupport;
 use crate::contact::tuning::{CORNER_SHIFT_REL, MAX_DROP};
 use crate::geometry::polygon::{Vec2, offset};
 use crate::math::{Vec3, ZERO, larger, lesser};
 use crate::minkowski::support::{Difference, Fault};
 
-/// Largest number of times that a tilt is lowered.
+/// Largest number of times that a slope is lowered.
 const MAX_CHORDS: usize = 3;
 
 /// The rule by which a side matters.
@@ -81,7 +81,7 @@ impl SideRule<'_, '_> {
     }
 }
 
-impl<D: Difference> TiltedSupport<'_, D> {
+impl<D: Difference> InclinedSupport<'_, D> {
     /// Finds the outline of an object. `face`: for the larger object its known face, with the smaller one's outline.
     ///
     /// # Errors
@@ -158,7 +158,7 @@ impl<D: Difference> TiltedSupport<'_, D> {
         if is_same(p, q) || !rule.matters(p, q, level, self.common_drop()) {
             return None;
         }
-        let out = outwards(p, q, self.depth_over_tilt, 0.0);
+        let out = outwards(p, q, self.depth_over_slope, 0.0);
         let mut v = self.evaluate(object, out);
         // Negated for NaN.
         if !(self.height(&v, &out) > self.height(p, &out) + 2.0 * self.vertex_offset) {
@@ -172,21 +172,21 @@ impl<D: Difference> TiltedSupport<'_, D> {
         (is_beyond && !is_same(&v, p) && !is_same(&v, q)).then_some(v)
     }
 
-    /// Lowers the tilt towards `out` to that of the chord from the deepest point to a vertex below the overlap, until the
+    /// Lowers the slope towards `out` to that of the chord from the deepest point to a vertex below the overlap, until the
     /// surface between them is straight or the vertex is in the overlap.
     #[cold]
     #[inline(never)]
     fn lowered(&self, object: usize, out: Vec2, mut v: Vec3) -> Vec3 {
-        let depth = self.depth_over_tilt * self.tilt;
+        let depth = self.depth_over_slope * self.slope;
         for _ in 0..MAX_CHORDS {
             let reach = out.dot(&v.xy());
-            let tilt = v.z * depth / reach;
+            let slope = v.z * depth / reach;
             // Negated for NaN.
-            if !(v.z > MAX_DROP && reach > 2.0 * self.vertex_offset && tilt < 0.999 * self.tilt) {
+            if !(v.z > MAX_DROP && reach > 2.0 * self.vertex_offset && slope < 0.999 * self.slope) {
                 break;
             }
-            let above = self.evaluate_at(object, out, tilt);
-            if !(out.dot(&above.xy()) - above.z * depth / tilt > CORNER_SHIFT_REL * reach) {
+            let above = self.evaluate_at(object, out, slope);
+            if !(out.dot(&above.xy()) - above.z * depth / slope > CORNER_SHIFT_REL * reach) {
                 break;
             }
             if above.z < 1.0 {
@@ -220,7 +220,7 @@ mod tests {
         };
         let md: MinkowskiDifference<_, _> = difference(|_: &Vec3| Vec3::zeros(), counted);
         let frame = ContactFrame::new(&Vec3::z(), &(at + Vec3::z() * (0.5 * DEPTH)));
-        let support = TiltedSupport::new(&md, frame, extent, [DEPTH; 2]);
+        let support = InclinedSupport::new(&md, frame, extent, [DEPTH; 2]);
         let mut outline = Outline::EMPTY;
         let footprint = support.find_outline(1, None, &mut outline).unwrap();
         (outline, footprint, calls.get())

@@ -4,14 +4,14 @@
 //! The tuned constants of the contact position and the contact manifold, with what was tried. Extent: the distance of
 //! an object's center from the contact.
 
-/// The factor in T = TILT_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
-/// a drop of one depth at that tilt (R T²/2), and all corners are found of a face whose drop grows by 0.7 depths over its
+/// The factor in T = SLOPE_FACTOR · sqrt(depth / extent), a tangent. A curved surface whose radius is the extent has
+/// a drop of one depth at that slope (R T²/2), and all corners are found of a face whose drop grows by 0.7 depths over its
 /// width. Measured (`pos pressure`): with 1.6 the error of a lying cylinder is 6.9 mm in place of 6.0 mm.
-pub const TILT_FACTOR: f64 = 1.4;
-/// Largest tilt, a tangent: 14°. T reaches it if the depth exceeds extent / 31, and the first directions of a face have it. With
+pub const SLOPE_FACTOR: f64 = 1.4;
+/// Largest slope, a tangent: 14°. T reaches it if the depth exceeds extent / 31, and the first directions of a face have it. With
 /// a larger one surfaces beside a face are taken for it; a smaller one underestimates the size of curved objects.
-pub const MAX_TILT_TAN: f64 = 0.25;
-/// Drop above which a tilt is lowered to the chord's, in depths: at T a surface whose radius is the extent has one. Measured
+pub const MAX_SLOPE: f64 = 0.25;
+/// Drop above which a slope is lowered to the chord's, in depths: at T a surface whose radius is the extent has one. Measured
 /// (`pos_flat axes 1000`): with 1.96 the position of a cone on its side jumps by 14 mm in place of 9 mm where the axes of the
 /// contact change.
 pub const MAX_DROP: f64 = 1.7;
@@ -44,12 +44,12 @@ pub const DEEP_RANGE: [f64; 2] = [0.2, 0.4];
 /// of 0: a corner is found instead of a face or an edge in 212 pairs with the value 0, in 21 with 0.001, in 12 with
 /// 0.002, in 1 with 0.01.
 pub const MIN_SLOP_REL: f64 = 0.01;
-/// Least slop, in rounding errors of a coordinate: the tilt must be well above the rounding error of the
+/// Least slop, in rounding errors of a coordinate: the slope must be well above the rounding error of the
 /// directions in a callback.
 pub const MIN_SLOP_ROUNDINGS: f64 = 4.0;
 /// Distance, in slops, below which samples may be of one rounded corner. The samples of a ball are 8 slops apart.
 pub const ROUND_CORNER_SLOPS: f64 = 16.0;
-/// Largest distance of the vertex at three quarters of a tilt from the middle of those at the whole and at half of it, on a
+/// Largest distance of the vertex at three quarters of a slope from the middle of those at the whole and at half of it, on a
 /// rounded corner, relative to their distance: 0 on a ball, 0.5 where it is one of two sharp corners.
 pub const ROUND_CORNER_REL: f64 = 0.125;
 /// Lean of the outward direction of a cached side towards its second corner: 3.6°, by which the face may rotate about the

@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The warmccd developers
 // SPDX-License-Identifier: BSD-3-Clause
 
-//! Evaluates one object of a contact along directions tilted from its outward normal.
+//! Evaluates one object of a contact along directions inclined from its outward normal.
 //!
 //! Points are given by their coordinates along the frame's axes, from the deepest point, and their *drop*: the distance
 //! below the object's support plane, in units of the depth. The *height* of a point along a unit vector `out` of the
-//! contact plane is its component along the tilted direction, divided by the tangent of the tilt.
+//! contact plane is its component along the inclined direction, divided by the slope.
 
 use crate::contact::frame::ContactFrame;
 use crate::contact::tuning::{
-    COMMON_DROP_FACTOR, DROP_TOL, MAX_TILT_TAN, TILT_FACTOR, VERTEX_OFFSET_REL,
+    COMMON_DROP_FACTOR, DROP_TOL, MAX_SLOPE, SLOPE_FACTOR, VERTEX_OFFSET_REL,
 };
 use crate::geometry::polygon::Vec2;
 use crate::math::{EPSILON, Vec3, larger, lesser};
@@ -17,8 +17,8 @@ use crate::minkowski::support::{Difference, Fault};
 use crate::minkowski::vertex_set::VertexSet;
 use core::cell::Cell;
 
-/// The objects of a contact, evaluated along tilted directions.
-pub struct TiltedSupport<'q, D> {
+/// The objects of a contact, evaluated along inclined directions.
+pub struct InclinedSupport<'q, D> {
     md: &'q D,
     pub frame: ContactFrame,
     /// The smaller object's extent: the distance of its center from the contact, metres; without centers that of its
@@ -27,14 +27,14 @@ pub struct TiltedSupport<'q, D> {
     /// The reciprocal of the unit of drops, 1/metres.
     per_depth: f64,
     /// Distance of the support planes from the frame's origin, metres.
-    half_gap: f64,
+    half_overlap: f64,
     /// T, a tangent.
-    pub tilt: f64,
-    /// The components along the normal and the axes of a unit direction of tilt T.
+    pub slope: f64,
+    /// The components along the normal and the axes of a unit direction of slope T.
     normal: Vec3,
     axes: [Vec3; 2],
     /// The unit of drops over T, metres.
-    pub depth_over_tilt: f64,
+    pub depth_over_slope: f64,
     /// Distance by which vertices are moved outwards, and below which two are the same, metres.
     pub vertex_offset: f64,
     /// The sum of all evaluated points' distances from the origin, to the fourth power.
@@ -44,49 +44,49 @@ pub struct TiltedSupport<'q, D> {
     pub least_drop: Cell<f64>,
 }
 
-impl<'q, D: Difference> TiltedSupport<'q, D> {
+impl<'q, D: Difference> InclinedSupport<'q, D> {
     /// Prepares the evaluation. The frame's origin is midway between the support planes. `extent`: of the smaller object.
-    /// `gap`: the distance of the support planes, metres. `depth`: the larger of that and the tolerance, metres.
+    /// `overlap`: the distance of the support planes, metres. `depth`: the larger of that and the tolerance, metres.
     #[inline(always)]
-    pub fn new(md: &'q D, frame: ContactFrame, extent: f64, [gap, depth]: [f64; 2]) -> Self {
-        let tilt = lesser(TILT_FACTOR * (depth / extent).sqrt(), MAX_TILT_TAN);
-        let cosine = cosine(tilt);
+    pub fn new(md: &'q D, frame: ContactFrame, extent: f64, [overlap, depth]: [f64; 2]) -> Self {
+        let slope = lesser(SLOPE_FACTOR * (depth / extent).sqrt(), MAX_SLOPE);
+        let cosine = cosine(slope);
         Self {
             md,
             frame,
             extent,
             per_depth: 1.0 / depth,
-            half_gap: 0.5 * gap,
-            tilt,
+            half_overlap: 0.5 * overlap,
+            slope,
             normal: frame.normal * cosine,
-            axes: frame.axes.map(|axis| axis * (tilt * cosine)),
-            depth_over_tilt: depth / tilt,
+            axes: frame.axes.map(|axis| axis * (slope * cosine)),
+            depth_over_slope: depth / slope,
             vertex_offset: larger(depth * VERTEX_OFFSET_REL, 64.0 * EPSILON * extent),
             squares: Cell::new(0.0),
             least_drop: Cell::new(1.0),
         }
     }
 
-    /// Evaluates an object along its outward normal tilted by T towards an axis, 0 or 1, or its opposite, 2 or 3.
+    /// Evaluates an object along its outward normal inclined by T towards an axis, 0 or 1, or its opposite, 2 or 3.
     #[inline(always)]
     pub fn evaluate_along_axis(&self, object: usize, axis: usize) -> Vec3 {
         let sign = if axis < 2 { 1.0 } else { -1.0 };
         self.vertex_along(object, self.normal, self.axes[axis % 2] * sign)
     }
 
-    /// Evaluates an object along its outward normal tilted by T towards unit `out`.
+    /// Evaluates an object along its outward normal inclined by T towards unit `out`.
     #[inline(always)]
     pub fn evaluate(&self, object: usize, out: Vec2) -> Vec3 {
         let aside = self.axes[0] * out.x + self.axes[1] * out.y;
         self.vertex_along(object, self.normal, aside)
     }
 
-    /// Evaluates an object along its outward normal tilted by `tilt`, a tangent, towards unit `out`.
+    /// Evaluates an object along its outward normal inclined by `slope`, a tangent, towards unit `out`.
     #[inline(always)]
-    pub fn evaluate_at(&self, object: usize, out: Vec2, tilt: f64) -> Vec3 {
-        let cosine = cosine(tilt);
+    pub fn evaluate_at(&self, object: usize, out: Vec2, slope: f64) -> Vec3 {
+        let cosine = cosine(slope);
         let axes = &self.frame.axes;
-        let aside = (axes[0] * out.x + axes[1] * out.y) * (tilt * cosine);
+        let aside = (axes[0] * out.x + axes[1] * out.y) * (slope * cosine);
         self.vertex_along(object, self.frame.normal * cosine, aside)
     }
 
@@ -99,7 +99,7 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         let square = p.norm_squared();
         self.squares.set(self.squares.get() + square * square);
         let [e1, e2] = &self.frame.axes;
-        let drop = (self.half_gap - self.frame.normal.dot(&p) * sign) * self.per_depth;
+        let drop = (self.half_overlap - self.frame.normal.dot(&p) * sign) * self.per_depth;
         let drop = larger(drop, 0.0);
         self.least_drop.set(lesser(drop, self.least_drop.get()));
         Vec3::new(e1.dot(&p), e2.dot(&p), drop)
@@ -121,10 +121,10 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         }
     }
 
-    /// Returns the height of a point along `out` at the tilt T, metres.
+    /// Returns the height of a point along `out` at the slope T, metres.
     #[inline(always)]
     pub fn height(&self, v: &Vec3, out: &Vec2) -> f64 {
-        out.dot(&v.xy()) - v.z * self.depth_over_tilt
+        out.dot(&v.xy()) - v.z * self.depth_over_slope
     }
 
     /// Calls `f` with the known vertices of an object in its support plane.
@@ -140,7 +140,7 @@ impl<'q, D: Difference> TiltedSupport<'q, D> {
         let sign = if k == 0 { 1.0 } else { -1.0 };
         let origin = self.frame.origin * sign;
         let ([e1, e2], n) = (self.frame.axes.map(|axis| axis * sign), self.frame.normal);
-        let least = n.dot(&origin) + self.half_gap - DROP_TOL / self.per_depth;
+        let least = n.dot(&origin) + self.half_overlap - DROP_TOL / self.per_depth;
         for [x, y, z] in set.all_coords() {
             let p = Vec3::new(x[k], y[k], z[k]);
             if n.dot(&p) >= least {
@@ -172,8 +172,8 @@ mod tests {
             let md = difference(hull(&points), ball(Vec3::zeros(), 0.2));
             let swapped = difference(ball(Vec3::zeros(), 0.2), hull(&points));
             let frame = |n| ContactFrame::new(&n, &at);
-            let one = TiltedSupport::new(&md, frame(n), 0.3, [0.01; 2]);
-            let two = TiltedSupport::new(&swapped, frame(-n), 0.3, [0.01; 2]);
+            let one = InclinedSupport::new(&md, frame(n), 0.3, [0.01; 2]);
+            let two = InclinedSupport::new(&swapped, frame(-n), 0.3, [0.01; 2]);
             let out = Vec2::new(0.6, -0.8);
             assert_eq!(one.evaluate(0, out), two.evaluate(1, out));
             for axis in 0..4 {
