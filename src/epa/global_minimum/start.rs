@@ -23,9 +23,6 @@ const WIDE_RING_DEPTHS: f64 = 3.0;
 /// with 1 boxes take 15 % and hulls 7 to 26 % more support points; with 0.125 hulls of 162 corners 9 % and warm ellipsoids 21 %
 /// more, bodies on plates of 20 m 3 to 9 % fewer.
 const NEAR_RING_REL: f64 = 0.25;
-/// The distance of the centers, in extents of the smaller object, below which they are close to each other. Measured:
-/// with 0.5 deep overlaps take as many support points.
-const CENTRAL_REL: f64 = 0.75;
 /// The squared turn of the ray, radians, above which the new ray is evaluated too: 29 degrees. Measured: without that misses
 /// of `ccdGJKPenetration` take 5.6 support points in place of 4.3; from 6 degrees on hulls without centers take 4 to 7 % more.
 const MAX_RAY_TURN2: f64 = 0.25;
@@ -57,8 +54,8 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         Ok(opposite)
     }
 
-    /// Step 5. Returns whether the distance of the centers is small beside the extents of both objects, each from its center
-    /// along the direction of the upper bound: the polytope will then reach all around the origin, and a regular tetrahedron
+    /// Step 5. Returns whether the centers are closer to each other than the extents of both objects, each from its center along
+    /// the direction of the upper bound: the polytope will then reach all around the origin, and a regular tetrahedron
     /// needs fewer insertions than that of a portal. The upper bound alone does not tell: that of a body on a wide plate is as
     /// large as the plate, and bodies there take 6 to 9 % more support points with it.
     pub(super) fn is_central(&self) -> bool {
@@ -66,8 +63,8 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         self.request.center.is_some_and(|center| {
             let extent1 = dir.dot(&(point.v1 - center.v1));
             let extent2 = dir.dot(&(center.v2 - point.v2));
-            let largest = CENTRAL_REL * lesser(extent1, extent2);
-            largest > 0.0 && center.v.norm_squared() < largest * largest
+            let extent = lesser(extent1, extent2);
+            extent > 0.0 && center.v.norm_squared() < extent * extent
         })
     }
 
