@@ -355,29 +355,8 @@ fn arc_radius<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::EPSILON;
-    use crate::minkowski::support::MinkowskiDifference;
-    use crate::test_shapes::{Rotation, Shape, ball, difference, ellipsoid, hull};
-
-    const ROUNDING: f64 = 1e3 * EPSILON;
-
-    type Balls = MinkowskiDifference<Shape<'static>, Shape<'static>>;
-
-    /// Balls of the radii 0.5 and 0.25, whose centers are 0.6 apart along x: the least support value is 0.15, along x.
-    fn balls() -> Balls {
-        difference(ball(Vec3::zeros(), 0.5), ball(Vec3::x() * 0.6, 0.25))
-    }
-
-    /// Evaluates three directions around x.
-    fn corners_around_x(
-        query: &mut SupportQuery<'_, Balls>,
-        set: &mut VertexSet<24>,
-    ) -> [Vertex; 3] {
-        [[0.4, 0.0], [-0.2, 0.3], [-0.2, -0.3]].map(|[y, z]| {
-            let n = Vec3::new(1.0, y, z).normalize();
-            query.evaluate(set, &n).unwrap().vertex()
-        })
-    }
+    use crate::minkowski::sphere_fit::tests::{ROUNDING, balls, corners_around_x};
+    use crate::test_shapes::{Rotation, ball, difference, ellipsoid, hull};
 
     #[test]
     fn a_prediction_is_evaluated_and_confirmed() {

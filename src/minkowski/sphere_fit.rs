@@ -315,23 +315,23 @@ fn fit_radii(first: &FitSample, second: &FitSample, tolerance: f64) -> [f64; 2] 
 }
 
 #[cfg(test)]
-mod tests {
+pub mod tests {
     use super::*;
     use crate::minkowski::support::MinkowskiDifference;
     use crate::minkowski::support_query::SupportQuery;
     use crate::test_shapes::{Random, Shape, ball, corners, difference, hull};
 
-    const ROUNDING: f64 = 1e3 * EPSILON;
+    pub const ROUNDING: f64 = 1e3 * EPSILON;
 
-    type Balls = MinkowskiDifference<Shape<'static>, Shape<'static>>;
+    pub type Balls = MinkowskiDifference<Shape<'static>, Shape<'static>>;
 
     /// Balls of the radii 0.5 and 0.25, whose centers are 0.6 apart along x: the least support value is 0.15, along x.
-    fn balls() -> Balls {
+    pub fn balls() -> Balls {
         difference(ball(Vec3::zeros(), 0.5), ball(Vec3::x() * 0.6, 0.25))
     }
 
     /// Evaluates three directions around x.
-    fn corners_around_x(
+    pub fn corners_around_x(
         query: &mut SupportQuery<'_, Balls>,
         set: &mut VertexSet<24>,
     ) -> [Vertex; 3] {
