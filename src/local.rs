@@ -17,7 +17,7 @@
 //!    small angle of the normal of the face, it is a candidate: go to step 6.
 //! 3. *Other valley*: if the face is farther from the origin than the upper bound, the next ray is along the direction
 //!    of the upper bound.
-//! 4. *Prediction* of the sphere fits, else of a Newton step on a smooth D ([`newton_step`]): evaluated if it would
+//! 4. *Prediction* of the sphere fits, else of a Newton step on a smooth D ([`Predictor`]): evaluated if it would
 //!    lower the upper bound. If the evaluated value agrees, the next ray is along it. A prediction that is equal to the
 //!    upper bound, or agrees with the evaluated value within most of the tolerance, is a candidate.
 //! 5. *Normal*: if the foot is outside the face, the next ray is along the face's normal, without a callback. If it is
@@ -378,7 +378,7 @@ impl<D: Difference, const N: usize> Walk<'_, '_, D, N> {
     /// Returns whether no support value of unit `n` inclined towards one of the unit vectors `directions`, which are
     /// perpendicular to it, is lower than the upper bound. Evaluates them, unless a direction near the inclined one was
     /// evaluated; `false` too if a limit is reached. `center_tolerance`: for spheres, metres, see
-    /// [`SphereFit::is_confirmed_twice`].
+    /// [`is_confirmed_twice`](crate::minkowski::sphere_fit::SphereFit::is_confirmed_twice).
     fn is_lowest(
         &mut self,
         n: &Vec3,

@@ -28,9 +28,9 @@ use crate::trace;
 /// curved pair takes 0.1 to 0.5 support points fewer.
 pub const MAX_REFINEMENTS: usize = 4;
 
-/// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `face`: a triangle of points of D
-/// that the ray crosses, with an outward normal. `lower`: the lower bound of the depth, metres. `tolerance`: metres. A full
-/// set ends the refinement.
+/// Evaluates up to [`MAX_REFINEMENTS`] directions, by the steps at the head of this file. `predictor`: that of the search.
+/// `face`: a triangle of points of D that the ray crosses, with an outward normal. `lower`: the lower bound of the depth,
+/// metres. `tolerance`: metres. A full set ends the refinement.
 ///
 /// # Errors
 /// As [`SupportQuery::evaluate`].

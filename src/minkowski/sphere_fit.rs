@@ -32,12 +32,12 @@ use crate::minkowski::vertex_set::{Vertex, VertexPair, VertexSet};
 const LOOSE_REL_TOL: f64 = 0.03;
 /// The same in exact fits: far above the rounding error of the callbacks.
 const EXACT_REL_TOL: f64 = if EPSILON < 1e-10 { 1e-6 } else { 1e-3 };
-/// The distance up to which two points of exact fits, or the difference of the centers and the origin, coincide, in radii.
-pub const SAME_CENTER_REL: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-5 };
+/// The distance up to which two points of exact fits, or the core and the origin, coincide, in radii.
+const SAME_CENTER_REL: f64 = if EPSILON < 1e-10 { 1e-9 } else { 1e-5 };
 /// The least distance of the core from the origin, in radii, that has a direction. Insensitive: 1e-15 to 1e-14 in double
-/// precision; with 1e-9, local searches of spheres whose centers are 1e-9 m apart take 220 support points in place of 6 at a
-/// tolerance of as much: no direction is predicted, and the radii alone predict a value that none has. In single precision
-/// the points are rounded by more.
+/// precision; with 1e-9, the normal of a face is predicted for spheres whose centers are 1e-9 m apart, with a value that no
+/// direction has, and their local search ends in no minimum at a tolerance of as much. In single precision the points are
+/// rounded by more.
 const MIN_CORE_DISTANCE_REL: f64 = if EPSILON < 1e-10 {
     16.0 * EPSILON
 } else {
@@ -172,7 +172,7 @@ impl SphereFit {
     }
 
     /// Returns the direction, unit, and the value of the least support value that the fit predicts near a face with
-    /// the outward normal `normal`; `None` without a prediction.
+    /// the outward unit `normal`; `None` without a prediction.
     pub fn predict<const N: usize>(
         &self,
         set: &VertexSet<N>,

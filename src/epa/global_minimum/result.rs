@@ -57,14 +57,8 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         let lower = distance - error;
         let mut face = *portal;
         if self.query.upper.depth - lower > tolerance {
-            refine_direction(
-                self.query,
-                set,
-                &mut self.predictor,
-                &mut face,
-                lower,
-                tolerance,
-            )?;
+            let (query, predictor) = (&mut *self.query, &mut self.predictor);
+            refine_direction(query, set, predictor, &mut face, lower, tolerance)?;
         }
         Ok(Some(self.proof(
             set,
@@ -102,14 +96,8 @@ impl<D: Difference> EpaSolver<'_, '_, D> {
         if end == Status::Converged && self.query.upper.depth - lower > tolerance {
             let corners = exit_face(&self.query.upper, set, self.allowed_gap());
             let mut face = Portal { corners };
-            refine_direction(
-                self.query,
-                set,
-                &mut self.predictor,
-                &mut face,
-                lower,
-                tolerance,
-            )?;
+            let (query, predictor) = (&mut *self.query, &mut self.predictor);
+            refine_direction(query, set, predictor, &mut face, lower, tolerance)?;
             refined = Some(face.corners);
         }
         let upper = self.query.upper.depth;
